@@ -11,7 +11,7 @@
 #include "host_sim/core/json.h"
 #include "host_sim/leveling/leveling_point.h"
 #include "host_sim/run/experiment/experiment_keys.h"
-#include "host_sim/run/session/arithmetic.h"
+#include "host_sim/run/session/session_layout.h"
 
 namespace screed {
 namespace {

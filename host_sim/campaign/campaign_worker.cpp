@@ -14,7 +14,7 @@
 #include "host_sim/core/json.h"
 #include "host_sim/engine/scratch_folder.h"
 #include "host_sim/engine/task_worker.h"
-#include "host_sim/run/session/arithmetic.h"
+#include "host_sim/run/session/session_layout.h"
 #include "host_sim/run/simulation/simulation.h"
 
 namespace screed {

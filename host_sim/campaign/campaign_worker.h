@@ -7,7 +7,7 @@
 
 #include "host_sim/campaign/campaign_folder.h"
 #include "host_sim/campaign/campaign_plan.h"
-#include "host_sim/run/simulation/simulation_options.h"
+#include "host_sim/run/simulation/simulation.h"
 
 namespace screed {
 

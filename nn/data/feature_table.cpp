@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/run/session/csv_export.h"
+#include "host_sim/run/session/export.h"
 #include "host_sim/run/session/session_reader.h"
 #include "nn/data/features.h"
 

@@ -9,7 +9,7 @@
 
 #include "firmware/robot/robot.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/run/simulation/names.h"
+#include "host_sim/run/simulation/outcome.h"
 #include "host_sim/run/world/world.h"
 #include "host_sim/run/world/world_setup.h"
 #include "nn/slip/slip_drive.h"

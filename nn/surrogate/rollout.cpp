@@ -4,7 +4,7 @@
 
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/robot_model.h"
-#include "host_sim/run/session/height_export.h"
+#include "host_sim/run/session/export.h"
 #include "host_sim/standin/coarse_ground.h"
 #include "host_sim/standin/standin_plant.h"
 #include "nn/surrogate/recorded_drive.h"

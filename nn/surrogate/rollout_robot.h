@@ -8,7 +8,7 @@
 #include "host_sim/devices/sensors/imu_model.h"
 #include "host_sim/physics/world/environment.h"
 #include "host_sim/run/experiment/experiment.h"
-#include "host_sim/run/session/session_info.h"
+#include "host_sim/run/session/session_layout.h"
 
 namespace screed::nn {
 

@@ -8,7 +8,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/experiment/run_setup.h"
-#include "host_sim/run/session/height_export.h"
+#include "host_sim/run/session/export.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/simulation/simulation.h"
 

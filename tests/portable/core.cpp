@@ -9,7 +9,7 @@
 #include "host_sim/core/rotation.h"
 #include "host_sim/leveling/transport.h"
 #include "host_sim/physics/soil/soil_bed.h"
-#include "host_sim/run/world/robot_number.h"
+#include "host_sim/run/world/placement.h"
 #include "host_sim/run/world/world.h"
 #include "host_sim/standin/standin_plant.h"
 #include "tests/portable/portable.h"

@@ -13,8 +13,8 @@
 #include "host_sim/core/record.h"
 #include "host_sim/ground_station/telemetry/schema.h"
 #include "host_sim/run/experiment/run_setup.h"
-#include "host_sim/run/session/height_export.h"
-#include "host_sim/run/simulation/terrain_outcome.h"
+#include "host_sim/run/session/export.h"
+#include "host_sim/run/simulation/outcome.h"
 
 namespace screed {
 namespace {

@@ -9,7 +9,7 @@
 #include "host_sim/core/ini_file.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/run/experiment/experiment.h"
-#include "host_sim/run/session/session_info.h"
+#include "host_sim/run/session/session_layout.h"
 
 namespace screed {
 

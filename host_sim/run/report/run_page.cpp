@@ -21,10 +21,9 @@
 #include "host_sim/render/picture/state_color.h"
 #include "host_sim/render/report/page_file.h"
 #include "host_sim/run/experiment/run_setup.h"
-#include "host_sim/run/report/curve_sampler.h"
+#include "host_sim/run/report/page_curves.h"
 #include "host_sim/run/report/page_terrain.h"
-#include "host_sim/run/report/page_track.h"
-#include "host_sim/run/simulation/names.h"
+#include "host_sim/run/simulation/outcome.h"
 #include "version.h"
 
 namespace screed {

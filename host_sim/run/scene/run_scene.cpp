@@ -13,7 +13,7 @@
 #include "host_sim/render/scene/sphere_scene.h"
 #include "host_sim/render/scene/terrain_scene.h"
 #include "host_sim/run/experiment/run_setup.h"
-#include "host_sim/run/session/robot_sessions.h"
+#include "host_sim/run/session/run_folder.h"
 
 namespace screed {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/hdf5_handle.h"
-#include "host_sim/run/session/session_info.h"
+#include "host_sim/run/session/session_layout.h"
 
 namespace screed {
 

@@ -1,12 +1,14 @@
 // Creating, committing and giving up the folder of a run.
 #include "host_sim/run/session/run_folder.h"
 
+#include <string>
 #include <system_error>
 #include <utility>
 
 #include "host_sim/core/errors.h"
 
 namespace screed {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -172,6 +174,31 @@ void RunFolder::commit() {
     throw RunError(final_.string() + ": cannot name the run: " + error.message() +
                    "; it is kept as " + partial_.string());
   }
+}
+
+// Opening and comparing their lengths.
+
+namespace {
+
+/// A flash image needs some milliseconds to start: the native robots beside it make a tick or two
+/// more.
+bool may_belong_together(const SessionReader& first, const SessionReader& further) {
+  if (first.frames() == further.frames()) return true;
+  return first.complete() && further.complete() && first.frames() < further.frames();
+}
+
+}  // namespace
+
+std::vector<SessionReader> open_robots(const std::filesystem::path& run) {
+  const std::vector<std::filesystem::path> files = session_files(run);
+  std::vector<SessionReader> sessions(files.begin(), files.end());
+  for (std::size_t i = 1; i < sessions.size(); ++i) {
+    if (may_belong_together(sessions[0], sessions[i])) continue;
+    throw InputError(files[i].string() + " has " + std::to_string(sessions[i].frames()) +
+                     " frames, " + files[0].string() + " " + std::to_string(sessions[0].frames()) +
+                     "; name the session.h5 of one robot instead of the folder");
+  }
+  return sessions;
 }
 
 }  // namespace screed

@@ -1,7 +1,37 @@
-// HDF5 types made from the column lists.
 #include "host_sim/run/session/session_layout.h"
 
+#include <ode/ode.h>
+
+#include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/content_hash.h"
+
+namespace screed {
+
+namespace {
+
+/// Whether ODE was compiled with fused multiply-add, as Debian's is for arm64: then the product
+/// below keeps what its rounding would drop.
+bool ode_fuses() {
+  const dReal a[] = {1.0 + 0x1p-30, 1.0};
+  const dReal b[] = {1.0 + 0x1p-30, -(1.0 + 0x1p-29)};
+  const dReal turned_a[] = {a[1], a[0]};
+  const dReal turned_b[] = {b[1], b[0]};
+  dReal sum = 0.0;
+  dReal other = 0.0;
+  dMultiply0(&sum, a, b, 1, 2, 1);
+  dMultiply0(&other, turned_a, turned_b, 1, 2, 1);
+  return sum != 0.0 || other != 0.0;
+}
+
+}  // namespace
+
+std::string arithmetic() {
+  return ode_fuses() ? "portable 1, ODE with fused multiply-add" : "portable 1";
+}
+
+}  // namespace screed
+
+// HDF5 types made from the column lists.
 
 namespace screed::layout {
 namespace {
@@ -100,3 +130,48 @@ std::string map_hash(const HeightMapView& map) {
 }
 
 }  // namespace screed::layout
+
+namespace screed {
+
+// One hash per part, joined at the end, so that it does not matter when a part becomes known.
+
+SessionHash::SessionHash(const SessionInfo& info) {
+  info_.add(info.seed);
+  info_.add(info.experiment_text);
+  info_.add(info.tick_rate_hz);
+  for (const layout::BoardField& field : layout::kBoardFields) {
+    info_.add(field.name);
+    info_.add(info.board.*field.field);
+  }
+  for (const ParameterInfo& parameter : kParameterTable) {
+    info_.add(parameter.name);
+    info_.add(info.parameters.values[parameter.number]);
+  }
+  info_.add(key_text(command_key_of(info.credentials)));
+  info_.add(info.credentials.key_set);
+  info_.add(info.credentials.boot_epoch);
+}
+
+void SessionHash::set_terrain_before(const HeightMapView& map) {
+  terrain_before_ = layout::map_hash(map);
+}
+
+void SessionHash::set_terrain_after(const HeightMapView& map) {
+  terrain_after_ = layout::map_hash(map);
+}
+
+std::string SessionHash::hex(std::uint64_t frames) const {
+  ContentHash hash;
+  hash.add(info_.hex());
+  hash.add(frames);
+  hash.add(frames_.hex());
+  hash.add(samples_.hex());
+  hash.add(outputs_.hex());
+  hash.add(terrain_before_);
+  hash.add(terrain_after_);
+  // Not of a session without: its hash stays what it was.
+  if (!heights_.empty()) hash.add(heights_);
+  return hash.hex();
+}
+
+}  // namespace screed

@@ -1,15 +1,49 @@
-// The names and types inside a session file, for the writer and the reader. docs/sessions.md
-// describes them for users.
+// What a session says about its run as a whole.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <string>
+#include <utility>
 
 #include "firmware/parameters/board_constants.h"
+#include "firmware/parameters/parameters.h"
+#include "hal/sample.h"
+#include "host_sim/core/content_hash.h"
 #include "host_sim/core/hdf5_handle.h"
 #include "host_sim/core/record.h"
+#include "host_sim/ground_station/station/command_key.h"
 #include "host_sim/leveling/leveling_point.h"
-#include "host_sim/run/session/session_info.h"
+#include "host_sim/physics/terrain/height_map.h"
+
+namespace screed {
+
+struct SessionInfo {
+  std::string program_version;  ///< not part of the content hash
+  std::string arithmetic;       ///< of the world (arithmetic.h); not part of it either
+  std::string experiment_name;  ///< not part of the content hash
+  /// the whole INI text that was in force, overrides applied; any size, no NUL byte
+  std::string experiment_text;
+  std::uint64_t seed = 0;
+  std::uint32_t tick_rate_hz = kTickRate_hz;
+  std::string board_name;
+  BoardConstants board{};
+  Parameters parameters;
+  Credentials credentials = credentials_of(test_key());
+};
+
+// How this program computes worlds.
+
+/// Two programs of one version with one arithmetic give the same bits, on whatever processor.
+std::string arithmetic();
+
+/// What a file means that names none: it is older than the names.
+inline constexpr char kUnnamedArithmetic[] = "the C library's";
+
+}  // namespace screed
+
+// The names and types inside a session file, for the writer and the reader. docs/sessions.md
+// describes them for users.
 
 namespace screed::layout {
 
@@ -98,3 +132,40 @@ HeightMapGeometry read_geometry(hid_t dataset, hsize_t nx, hsize_t ny);
 std::string map_hash(const HeightMapView& map);
 
 }  // namespace screed::layout
+
+namespace screed {
+
+// The content hash of a session: what "same seed, same bytes" is checked with.
+//
+// Covers seed, experiment text, tick rate, board constants, parameters, every frame, sample and
+// output, the terrains and the recorded heights; not the program version, names, or anything of the
+// file that holds them.
+
+class SessionHash {
+ public:
+  explicit SessionHash(const SessionInfo& info);
+
+  /// Packed rows (record.h) in order; the three tables may be added in any interleaving and in
+  /// blocks of any size.
+  void add_frames(std::span<const std::uint8_t> rows) { frames_.add_bytes(rows); }
+  void add_samples(std::span<const std::uint8_t> rows) { samples_.add_bytes(rows); }
+  void add_outputs(std::span<const std::uint8_t> rows) { outputs_.add_bytes(rows); }
+  void set_terrain_before(const HeightMapView& map);
+  void set_terrain_after(const HeightMapView& map);
+  /// Of the height series (height_series.h).
+  void set_heights(std::string hash) { heights_ = std::move(hash); }
+
+  /// The hash of all of it, 32 hexadecimal digits.
+  std::string hex(std::uint64_t frames) const;
+
+ private:
+  ContentHash info_;
+  ContentHash frames_;
+  ContentHash samples_;
+  ContentHash outputs_;
+  std::string terrain_before_;
+  std::string terrain_after_;
+  std::string heights_;
+};
+
+}  // namespace screed

@@ -12,9 +12,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/hdf5_handle.h"
 #include "host_sim/core/record.h"
-#include "host_sim/run/session/arithmetic.h"
 #include "host_sim/run/session/height_series.h"
-#include "host_sim/run/session/session_hash.h"
 #include "host_sim/run/session/session_layout.h"
 
 namespace screed {

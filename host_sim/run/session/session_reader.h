@@ -14,7 +14,7 @@
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/leveling/leveling_point.h"
 #include "host_sim/physics/terrain/sphere_set.h"
-#include "host_sim/run/session/session_info.h"
+#include "host_sim/run/session/session_layout.h"
 
 namespace screed {
 

@@ -13,7 +13,7 @@
 #include "host_sim/leveling/leveling_point.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/sphere_set.h"
-#include "host_sim/run/session/session_info.h"
+#include "host_sim/run/session/session_layout.h"
 
 namespace screed {
 

@@ -5,7 +5,7 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/run/session/csv_export.h"
+#include "host_sim/run/session/export.h"
 #include "host_sim/run/session/session_reader.h"
 
 namespace screed {

@@ -11,7 +11,7 @@
 
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/session/run_folder.h"
-#include "host_sim/run/simulation/simulation_options.h"
+#include "host_sim/run/simulation/simulation.h"
 
 namespace screed {
 

@@ -1,7 +1,53 @@
-// The order of things within a tick.
+// Sleeping to a point in time, so that errors of single sleeps do not add up.
 #include "host_sim/run/simulation/run_loop.h"
 
+#include <thread>
+
+#include "hal/sample.h"
+
 namespace screed {
+
+WallClock::Time WallClock::now() const {
+  return std::chrono::steady_clock::now();
+}
+
+void WallClock::sleep_until(Time time) {
+  std::this_thread::sleep_until(time);
+}
+
+Pacer::Pacer(WallClock& clock, bool realtime)
+    : clock_(clock), realtime_(realtime), begin_(clock.now()) {}
+
+void Pacer::wait_until(double simulated_s) {
+  if (!realtime_) return;
+  clock_.sleep_until(begin_ + std::chrono::duration_cast<WallClock::Time::duration>(
+                                  std::chrono::duration<double>(simulated_s)));
+}
+
+double Pacer::elapsed_s() const {
+  return std::chrono::duration<double>(clock_.now() - begin_).count();
+}
+
+// When to tell.
+
+namespace {
+
+constexpr uint64_t kProgressTicks = kTickRate_hz / 10;
+
+}  // namespace
+
+void Progress::on_leveling(const LevelingPoint& point) {
+  now_m_ = point.level_deviation;
+  if (!before_m_.has_value()) before_m_ = now_m_;
+}
+
+void Progress::on_tick(const StopCondition& stop, double time_s) const {
+  if (!callback_) return;
+  if (stop.ticks() % kProgressTicks == 0 || stop.done())
+    callback_({stop.counted_s(time_s), stop.duration_s(), before_m_.value_or(0.0), now_m_});
+}
+
+// The order of things within a tick.
 
 RunLoop::RunLoop(World& world, const RunParts& parts)
     : world_(world),

@@ -1,10 +1,11 @@
-// The pictures of a run: the terrain before, after it with the driven path, what has changed, and
-// how it was leveled. Made at its end, and again from its session.
+// How a run has leveled, in one picture: the ground before and after it in the same colours, and
+// the curves of relief and transport over time.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "host_sim/core/sim_frame.h"
@@ -16,6 +17,14 @@
 #include "host_sim/run/session/session_reader.h"
 
 namespace screed {
+
+/// The text of an SVG file. `title`: of which run. `points`: its leveling curve, the first from
+/// before it; throws InputError when there are less than two.
+std::string leveling_svg(const std::string& title, const HeightField& before,
+                         const HeightField& after, std::span<const LevelingPoint> points);
+
+// The pictures of a run: the terrain before, after it with the driven path, what has changed, and
+// how it was leveled. Made at its end, and again from its session.
 
 /// The terrain before and after a run, as TerrainMeasure::surface() gives it.
 struct RunSurfaces {

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "host_sim/core/content_hash.h"
-#include "host_sim/run/simulation/names.h"
+#include "host_sim/run/simulation/outcome.h"
 
 namespace screed {
 namespace {

@@ -9,9 +9,7 @@
 
 #include "host_sim/core/json.h"
 #include "host_sim/devices/mcu/cycle_report.h"
-#include "host_sim/run/simulation/leveling_monitor.h"
-#include "host_sim/run/simulation/stop_condition.h"
-#include "host_sim/run/simulation/terrain_outcome.h"
+#include "host_sim/run/simulation/outcome.h"
 
 namespace screed {
 

@@ -16,14 +16,15 @@
 #include "host_sim/ground_station/telemetry/arming.h"
 #include "host_sim/render/picture/robot_shape.h"
 #include "host_sim/run/experiment/robot_model.h"
-#include "host_sim/run/session/arithmetic.h"
-#include "host_sim/run/simulation/names.h"
+#include "host_sim/run/session/session_layout.h"
+#include "host_sim/run/simulation/outcome.h"
+#include "host_sim/run/simulation/recorders.h"
 #include "host_sim/run/simulation/run_files.h"
 #include "host_sim/run/simulation/run_loop.h"
 #include "host_sim/run/simulation/run_pictures.h"
-#include "host_sim/run/simulation/session_recorder.h"
 
 namespace screed {
+
 namespace {
 
 SessionInfo session_info(const Experiment& experiment, const SimulationOptions& options,

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "host_sim/run/world/robot_controller.h"
+#include "host_sim/run/world/world.h"
 
 namespace screed {
 

@@ -11,9 +11,9 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/devices/mcu/mcu.h"
 #include "host_sim/devices/sensors/calibration_motion.h"
-#include "host_sim/run/experiment/sections/experiment_section.h"
+#include "host_sim/run/experiment/vehicle_sections.h"
 #include "host_sim/run/world/image_robot.h"
-#include "host_sim/run/world/robot_number.h"
+#include "host_sim/run/world/placement.h"
 
 namespace screed::mcu {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "host_sim/core/random.h"
 #include "host_sim/devices/mcu/board.h"
-#include "host_sim/run/world/robot_controller.h"
+#include "host_sim/run/world/world.h"
 
 namespace screed::mcu {
 

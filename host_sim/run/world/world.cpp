@@ -1,14 +1,132 @@
+// What surrounds a robot, tick by tick.
 #include "host_sim/run/world/world.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 
+#include "firmware/main_loop.h"
+#include "hal/sample.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/devices/sensors/calibration_motion.h"
 #include "host_sim/run/world/image_robot.h"
-#include "host_sim/run/world/native_robot.h"
+#include "host_sim/run/world/placement.h"
 
 namespace screed {
+
+namespace {
+
+Eigen::Vector3d robot_position(const RobotView& robot) {
+  return robot.vehicle().chassis().pose.translation();
+}
+
+std::optional<uint64_t> tick_at(const std::optional<double>& time_s) {
+  if (!time_s.has_value()) return std::nullopt;
+  return static_cast<uint64_t>(std::llround(*time_s * kTickRate_hz));
+}
+
+}  // namespace
+
+RobotDevices::RobotDevices(const WorldOptions& options, size_t number, const RobotView& robot)
+    : RobotDevices(options, options.robots[number], seed_of_robot(options.seed, number), robot) {}
+
+RobotDevices::RobotDevices(const WorldOptions& options, const RobotOptions& own, uint64_t seed,
+                           const RobotView& robot)
+    : imu_(seed, options.imu),
+      uplink_(seed, "uplink", options.radio),
+      downlink_(seed, "downlink", options.radio),
+      ground_(options.ground_station_arms, own.drive, own.telemetry_log, own.ground_key,
+              PositionFixes(seed, options.fixes)),
+      ground_end_(own.ground_port),
+      station_m_(robot_position(robot)),
+      encoder_counts_per_turn_(options.encoder_counts_per_turn),
+      lay_on_side_tick_(tick_at(own.lay_on_side_at_s)) {}
+
+void RobotDevices::execute_events(uint64_t tick, RobotView& robot) {
+  if (lay_on_side_tick_ == tick) robot.lay_on_side();
+}
+
+void RobotDevices::exchange_radio(uint64_t now_us, const RobotView& robot) {
+  const Eigen::Vector3d position = robot_position(robot);
+  const double distance_m = (position - station_m_).norm();
+  ground_.see_robot(position.x(), position.y());
+  uplink_.set_distance(distance_m);
+  downlink_.set_distance(distance_m);
+  ground_end_.tick(now_us, ground_, uplink_, downlink_);
+}
+
+double RobotDevices::encoder_position(const RobotView& robot, Side side) const {
+  const double turns = robot.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
+  return turns * encoder_counts_per_turn_;
+}
+
+// Sensors, radio and motors of a native robot, tick by tick.
+
+NativeRobot::NativeRobot(const WorldOptions& options, Environment& plant, size_t number)
+    : RobotController(options, plant, number),
+      calibration_motion_(options.calibration_motion),
+      firmware_(settings().board, settings().parameters, settings().credentials) {}
+
+void NativeRobot::begin_tick(uint64_t tick) {
+  end_of_tick_steps_ = plant().steps() + static_cast<uint64_t>(plant().steps_per_tick());
+  devices().execute_events(tick, robot());
+}
+
+// The ground station sends before the robot receives.
+void NativeRobot::end_step() {
+  if (!at_end_of_tick()) return;
+  measure();
+  devices().exchange_radio(world_us(), robot());
+  receive_radio();
+}
+
+// Fields that only a microcontroller has (last_tick_us, errors, chips_failing, reset_cause) stay 0.
+void NativeRobot::measure() {
+  devices().imu().measure(
+      calibration_motion_ ? calibration_motion(plant().time_s()) : robot().motion(), measured_);
+
+  const auto counts = [&](Side side) {
+    return static_cast<uint16_t>(
+        static_cast<int64_t>(std::floor(devices().encoder_position(robot(), side))) & 0xFFFF);
+  };
+  measured_.encoder_left = counts(kLeft);
+  measured_.encoder_right = counts(kRight);
+  measured_.battery = static_cast<uint16_t>(std::clamp(
+      std::round(robot().battery().terminal_v * 1e6 / settings().board.battery_uv_per_lsb), 0.0,
+      double{kBatteryMax}));
+  measured_.time_us = static_cast<uint32_t>(world_us());
+}
+
+void NativeRobot::receive_radio() {
+  const std::span<const uint8_t> arrived = devices().uplink().receive(world_us(), kRadioInCapacity);
+  measured_.radio_in_count = static_cast<uint8_t>(arrived.size());
+  std::fill(std::copy(arrived.begin(), arrived.end(), measured_.radio_in),
+            measured_.radio_in + kRadioInCapacity, static_cast<uint8_t>(0));
+}
+
+RobotController::Progress NativeRobot::live(RobotWatch* watch) {
+  if (!at_end_of_tick()) return Progress::kNoAnswer;
+  offered_ = measured_;
+  if (watch != nullptr && !watch->on_sample(number(), offered_)) return Progress::kOver;
+  watch_ = watch;
+  const hal::TargetScope scope(*this);
+  tick_firmware(firmware_, sample_, output_);
+  return Progress::kAnswered;
+}
+
+void NativeRobot::write_outputs(const RobotOutput& answer) {
+  RobotOutput output = answer;
+  if (watch_ != nullptr) watch_->on_output(number(), output);
+  const auto ratio = [](int16_t duty) {
+    return static_cast<double>(std::clamp<int16_t>(duty, -kDutyMax, kDutyMax)) / kDutyMax;
+  };
+  duty_ratio_ = {ratio(output.duty_left), ratio(output.duty_right)};
+  devices().downlink().send(
+      world_us(), {output.radio_out, std::min(output.radio_out_count, kRadioOutCapacity)});
+}
 
 World::World(std::unique_ptr<Environment> plant, const WorldOptions& options)
     : plant_(std::move(plant)), duty_ratios_(plant_->robots()) {

@@ -16,10 +16,8 @@
 #include "host_sim/physics/world/plant.h"
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/experiment/robot_sections.h"
-#include "host_sim/run/experiment/trap.h"
 #include "host_sim/run/world/image_robot.h"
-#include "host_sim/run/world/robot_number.h"
-#include "host_sim/run/world/robot_placement.h"
+#include "host_sim/run/world/placement.h"
 
 namespace screed {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "host_sim/devices/mcu/board.h"
 #include "host_sim/ground_station/link/pseudo_terminal.h"
-#include "host_sim/run/simulation/pacer.h"
+#include "host_sim/run/simulation/run_loop.h"
 #include "tests/mcu/images.h"
 #include "tests/mcu/usb_host.h"
 #include "tests/sitl/background.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "host_sim/run/simulation/simulation_options.h"
+#include "host_sim/run/simulation/simulation.h"
 
 namespace screed {
 

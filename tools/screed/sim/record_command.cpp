@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "host_sim/run/experiment/sections/experiment_section.h"
-#include "host_sim/run/simulation/names.h"
+#include "host_sim/run/experiment/vehicle_sections.h"
+#include "host_sim/run/simulation/outcome.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "host_sim/core/json.h"
-#include "host_sim/run/session/arithmetic.h"
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/run_folder.h"
+#include "host_sim/run/session/session_layout.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/task_bar.h"
 

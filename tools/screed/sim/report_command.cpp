@@ -19,7 +19,6 @@
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/report/run_page.h"
 #include "host_sim/run/scene/log_session.h"
-#include "host_sim/run/session/robot_sessions.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_reader.h"
 #include "tools/screed/cli/command.h"

@@ -11,7 +11,7 @@
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/experiment/robot_sections.h"
-#include "host_sim/run/simulation/names.h"
+#include "host_sim/run/simulation/outcome.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"

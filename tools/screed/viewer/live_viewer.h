@@ -6,8 +6,8 @@
 #include <span>
 
 #include "host_sim/run/experiment/experiment.h"
-#include "host_sim/run/simulation/height_watch.h"
-#include "host_sim/run/simulation/simulation_observer.h"
+#include "host_sim/run/simulation/recorders.h"
+#include "host_sim/run/simulation/run_loop.h"
 #include "tools/screed/viewer/keyboard_driver.h"
 #include "tools/screed/viewer/viewer_display.h"
 

@@ -11,7 +11,7 @@
 #include "host_sim/core/display_units.h"
 #include "host_sim/render/picture/map_frame.h"
 #include "host_sim/render/picture/state_color.h"
-#include "host_sim/run/simulation/names.h"
+#include "host_sim/run/simulation/outcome.h"
 #include "tools/screed/viewer/style.h"
 
 namespace screed::viewer {

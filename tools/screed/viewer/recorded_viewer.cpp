@@ -9,8 +9,8 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/run_setup.h"
-#include "host_sim/run/session/height_export.h"
-#include "host_sim/run/session/robot_sessions.h"
+#include "host_sim/run/session/export.h"
+#include "host_sim/run/session/run_folder.h"
 #include "schema/values.h"
 #include "tools/screed/cli/interrupt.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host_sim/physics/terrain/height_field.h"
-#include "host_sim/run/session/session_info.h"
+#include "host_sim/run/session/session_layout.h"
 
 namespace screed::viewer {
 

@@ -9,7 +9,7 @@
 
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/render/picture/color_map.h"
-#include "host_sim/run/session/session_info.h"
+#include "host_sim/run/session/session_layout.h"
 
 namespace screed::viewer {
 

@@ -16,7 +16,7 @@
 #include "host_sim/leveling/leveling_point.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/run/experiment/experiment.h"
-#include "host_sim/run/simulation/terrain_outcome.h"
+#include "host_sim/run/simulation/outcome.h"
 #include "tools/screed/viewer/drawing.h"
 #include "tools/screed/viewer/input.h"
 #include "tools/screed/viewer/subtitle.h"

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "host_sim/physics/soil/soil_parameters.h"
-#include "host_sim/run/experiment/trap.h"
+#include "host_sim/run/world/placement.h"
 
 namespace screed::nn {
 namespace {

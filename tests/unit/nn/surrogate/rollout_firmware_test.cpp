@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "host_sim/run/experiment/robot_model.h"
-#include "host_sim/run/session/height_export.h"
+#include "host_sim/run/session/export.h"
 #include "nn/surrogate/rollout.h"
 #include "nn/surrogate/rollout_robot.h"
 #include "tests/unit/nn/surrogate/linear_model.h"

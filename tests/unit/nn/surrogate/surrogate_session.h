@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/run/simulation/frame_recorder.h"
-#include "host_sim/run/simulation/height_watch.h"
+#include "host_sim/run/simulation/recorders.h"
 #include "host_sim/run/world/world_setup.h"
 #include "nn/surrogate/surrogate_plant.h"
 #include "tests/unit/nn/surrogate/made_up_drive.h"

@@ -17,7 +17,7 @@
 #include "host_sim/render/picture/path_overlay.h"
 #include "host_sim/render/picture/state_color.h"
 #include "host_sim/render/picture/terrain_picture.h"
-#include "host_sim/run/simulation/names.h"
+#include "host_sim/run/simulation/outcome.h"
 #include "tests/temp_folder.h"
 
 namespace screed {

@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/run/world/robot_number.h"
-#include "host_sim/run/world/robot_placement.h"
+#include "host_sim/run/world/placement.h"
 #include "host_sim/run/world/world_setup.h"
 #include "tests/temp_folder.h"
 

@@ -1,5 +1,5 @@
 // Traps that an experiment cuts into its terrain.
-#include "host_sim/run/experiment/trap.h"
+#include "host_sim/run/world/placement.h"
 
 #include <gtest/gtest.h>
 

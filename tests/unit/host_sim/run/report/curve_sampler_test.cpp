@@ -1,5 +1,5 @@
 // Curves of the page: all ticks of a short run, the extremes of a long one.
-#include "host_sim/run/report/curve_sampler.h"
+#include "host_sim/run/report/page_curves.h"
 
 #include <gtest/gtest.h>
 

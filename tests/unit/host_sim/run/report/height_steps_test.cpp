@@ -1,5 +1,5 @@
 // The terrain over time as the page gets it: read back as the page reads it.
-#include "host_sim/run/report/height_steps.h"
+#include "host_sim/run/report/page_terrain.h"
 
 #include <gtest/gtest.h>
 

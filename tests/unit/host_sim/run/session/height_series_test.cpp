@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "host_sim/run/session/height_series.h"
-#include "host_sim/run/simulation/height_watch.h"
+#include "host_sim/run/simulation/recorders.h"
 #include "tests/unit/host_sim/run/session/session_fixture.h"
 
 namespace screed {

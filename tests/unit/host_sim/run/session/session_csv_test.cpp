@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "host_sim/run/session/csv_export.h"
+#include "host_sim/run/session/export.h"
 #include "tests/child_process.h"
 #include "tests/unit/host_sim/run/session/session_fixture.h"
 

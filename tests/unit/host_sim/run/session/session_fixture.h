@@ -14,7 +14,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/hdf5_handle.h"
 #include "host_sim/core/record.h"
-#include "host_sim/run/session/arithmetic.h"
+#include "host_sim/run/session/session_layout.h"
 #include "host_sim/run/session/session_reader.h"
 #include "host_sim/run/session/session_writer.h"
 #include "tests/temp_folder.h"

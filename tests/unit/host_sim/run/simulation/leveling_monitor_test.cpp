@@ -1,5 +1,5 @@
 // When a run is measured, and what of.
-#include "host_sim/run/simulation/leveling_monitor.h"
+#include "host_sim/run/simulation/outcome.h"
 
 #include <gtest/gtest.h>
 

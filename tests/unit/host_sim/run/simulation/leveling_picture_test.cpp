@@ -1,5 +1,5 @@
 // What the picture of a leveling run says: figures, maps, curves.
-#include "host_sim/run/simulation/leveling_picture.h"
+#include "host_sim/run/simulation/run_pictures.h"
 
 #include <gtest/gtest.h>
 

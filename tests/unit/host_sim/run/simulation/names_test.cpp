@@ -1,5 +1,5 @@
 // Names of states and faults as summaries, pictures and the viewer show them.
-#include "host_sim/run/simulation/names.h"
+#include "host_sim/run/simulation/outcome.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Pacing by a clock that only moves when told to.
-#include "host_sim/run/simulation/pacer.h"
+#include "host_sim/run/simulation/run_loop.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // A shadow that agrees with the robot, and what is said when it does not.
-#include "host_sim/run/simulation/parity_checker.h"
+#include "host_sim/run/simulation/parity.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // How often a run tells how far it has come.
-#include "host_sim/run/simulation/progress.h"
+#include "host_sim/run/simulation/run_loop.h"
 
 #include <gtest/gtest.h>
 

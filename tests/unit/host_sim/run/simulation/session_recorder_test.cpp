@@ -1,5 +1,5 @@
 // From ticks to the session file and the path.
-#include "host_sim/run/simulation/session_recorder.h"
+#include "host_sim/run/simulation/recorders.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // When a run ends, and which reason it gives.
-#include "host_sim/run/simulation/stop_condition.h"
+#include "host_sim/run/simulation/outcome.h"
 
 #include <gtest/gtest.h>
 

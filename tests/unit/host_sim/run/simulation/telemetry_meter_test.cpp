@@ -1,5 +1,5 @@
 // What a robot sent, in frames and as a share of its line.
-#include "host_sim/run/simulation/telemetry_meter.h"
+#include "host_sim/run/simulation/run_loop.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What a run did to its terrain, on soil and on particles.
-#include "host_sim/run/simulation/terrain_outcome.h"
+#include "host_sim/run/simulation/outcome.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Radio, encoders and scripted events round a robot.
-#include "host_sim/run/world/robot_devices.h"
+#include "host_sim/run/world/world.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include "firmware/protocol/e2e.h"
 #include "hal/sample.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/run/world/world.h"
 #include "tests/step_one.h"
 #include "tests/unit/host_sim/run/rover5_plant.h"
 

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "host_sim/run/simulation/names.h"
+#include "host_sim/run/simulation/outcome.h"
 #include "tools/screed/viewer/input.h"
 #include "tools/screed/viewer/panel.h"
 

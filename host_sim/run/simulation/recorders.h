@@ -1,5 +1,5 @@
-// Records a run in its session file: frames, samples and answers of every tick, heights where asked
-// for, and the terrain before and after. Keeps the driven path, for the pictures.
+// Finds what changed on a height field since it looked last, at the cost of the changes and not of
+// the bed.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,38 @@
 #include <string>
 #include <vector>
 
+#include "firmware/robot/robot.h"
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/leveling/leveling_point.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/terrain/sphere_set.h"
+#include "host_sim/physics/world/environment.h"
 #include "host_sim/render/picture/terrain_picture.h"
-#include "host_sim/run/session/session_info.h"
+#include "host_sim/run/session/session_layout.h"
 #include "host_sim/run/session/session_writer.h"
-#include "host_sim/run/simulation/height_watch.h"
 
 namespace screed {
+
+class HeightWatch {
+ public:
+  explicit HeightWatch(const HeightField& field);
+
+  /// The changes since the last call, tile by tile; valid until the next one. The field must be the
+  /// one of the constructor, or one of the same size whose revisions go on.
+  std::span<const HeightChange> changes(const HeightField& field);
+
+ private:
+  void look_at_tile(const HeightField& field, size_t tile);
+
+  std::vector<Height> known_;
+  std::vector<uint32_t> revisions_;
+  std::vector<HeightChange> changes_;
+};
+
+// Records a run in its session file: frames, samples and answers of every tick, heights where asked
+// for, and the terrain before and after. Keeps the driven path, for the pictures.
 
 /// Ticks from one point of a recorded path to the next.
 inline constexpr std::uint64_t kPathTicks = kTickRate_hz / 10;
@@ -72,6 +92,23 @@ class SessionRecorder {
   uint64_t height_changes_ = 0;
   uint64_t ticks_ = 0;
   std::vector<PathPoint> path_;
+};
+
+// Makes one frame of a session from the world's truth and from what the robot thinks.
+
+class FrameRecorder {
+ public:
+  /// The frame of this tick: the plant as the sample saw it, the robot after its answer.
+  SimFrame record(double time_s, const RobotView& plant, const Robot& robot);
+
+  /// Length of the chassis' path so far, m.
+  double distance_m() const { return distance_m_; }
+
+ private:
+  bool first_ = true;
+  Eigen::Vector3d last_travelled_ = Eigen::Vector3d::Zero();
+  double last_heading_ = 0.0;
+  double distance_m_ = 0.0;
 };
 
 }  // namespace screed
