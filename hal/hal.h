@@ -10,7 +10,7 @@
 namespace screed {
 
 struct BoardConstants;  // firmware/parameters/board_constants.h
-struct Credentials;     // firmware/security/credentials.h
+struct Credentials;     // firmware/security/command_mac.h
 struct Parameters;      // firmware/parameters/parameters.h
 
 namespace hal {

@@ -14,15 +14,15 @@ CXX := clang++
 WARNINGS := -w
 
 # Bytes of the radio and of a console; CAN frames; keys and parameters as an EEPROM holds them.
-ASAN_UNIT := command command_gate command_key command_session corruption e2e ground_station host_hal key_command key_store link messages \
-  parameter_store parameters radio_link robot robot_downlink robot_history siphash slcan supervisor supervisor_fault telemetry track_slip
+ASAN_UNIT := command command_key command_session corruption ground_station host_hal key_command link messages \
+  parameters radio_link robot robot_downlink robot_history security protocol supervisor supervisor_fault telemetry track_slip
 # Files: logs, schemas, experiments, images, meshes, robots, sessions, models, listings of an image.
-ASAN_UNIT += attitude_command avr_indirect_calls avr_order avr_stack board_table candump_log content_hash decode experiment grey_image half_written \
-  header_export height_field height_series ini_file json mesh model_file network picture run_folder schema schema_compiler session session_csv \
-  session_damage session_failure session_hash session_replay urdf urdf_refusal urdf_roles wheel_rim
+ASAN_UNIT += attitude_command avr_order avr_stack board_table candump_log content_hash decode experiment grey_image half_written \
+  header_export height_field height_series ini_file json model_file network picture run_folder schema schema_compiler session session_csv \
+  session_damage session_replay urdf urdf_refusal urdf_roles urdf_body
 # Grids that a position indexes.
-ASAN_UNIT += footprint grid_world kernels material_digging material_flow particle_motion soil_bed soil_cells shear_field soil_dig \
-  soil_measurements soil_path soil_shear wheel_stress
+ASAN_UNIT += footprint grid_world kernels material_digging material_flow particle_motion soil_bed soil_grid shear_field soil_dig \
+  soil_measurements soil_path soil_shear soil_laws
 # The simulated board: registers, bus and USB, which an image writes as it likes.
 ASAN_MCU := board_parts chips quadrature screed_image
 

@@ -35,4 +35,11 @@ class SkidSteer {
   uint16_t half_arc_q22_;  ///< B/2 * 2 pi / 65536 in Q22: mm/s at the track per unit of yaw rate
 };
 
+// A track as its speed control knows it: what the slip watch asks of the control.
+
+struct TrackMotion {
+  int16_t speed_dmm_per_s;  ///< observed, 0.1 mm/s
+  int16_t effort;           ///< duty beyond what drives the unloaded track
+};
+
 }  // namespace screed

@@ -10,7 +10,7 @@
 
 #include <stdint.h>
 
-#include "firmware/control/track_motion.h"
+#include "firmware/control/kinematics.h"
 #include "firmware/parameters/board_constants.h"
 #include "firmware/parameters/kept.h"
 #include "firmware/parameters/parameters.h"

@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#include "firmware/control/track_motion.h"
+#include "firmware/control/kinematics.h"
 #include "firmware/math/fixed.h"
 
 namespace screed {

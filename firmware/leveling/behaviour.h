@@ -25,7 +25,7 @@
 
 #include "firmware/control/kinematics.h"
 #include "firmware/estimation/place.h"
-#include "firmware/leveling/site_fence.h"
+#include "firmware/leveling/site.h"
 #include "firmware/leveling/walk_legs.h"
 #include "firmware/parameters/kept.h"
 #include "firmware/parameters/parameters.h"

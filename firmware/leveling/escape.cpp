@@ -63,7 +63,7 @@ void Escape::begin_step() {
   motion_.yaw_rate = static_cast<YawRate>(static_cast<int8_t>(turn) * 256);
   uint8_t time = read_program_u8(step + 2);
   // Outside a robot that is stuck again and again would get farther away, and turned by more than
-  // 45 degrees it would turn back on the spot (site_fence.cpp) and dig in there.
+  // 45 degrees it would turn back on the spot (site.cpp) and dig in there.
   if (outside_ && way_ == 0) time = static_cast<uint8_t>(time >> 1);
   ticks_left_ = static_cast<uint16_t>(time * 4U);
 }

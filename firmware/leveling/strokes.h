@@ -15,7 +15,7 @@
 #pragma once
 
 #include "firmware/leveling/behaviour.h"
-#include "firmware/leveling/site_rectangle.h"
+#include "firmware/leveling/site.h"
 #include "firmware/math/random.h"
 
 namespace screed {

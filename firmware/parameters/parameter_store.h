@@ -1,6 +1,6 @@
 // How the parameters lie in the robot's EEPROM: two copies, each with a sequence number and a CRC,
 // so that a write that power cuts short leaves the other copy. Pure bytes: the robot's driver
-// (hal/avr/parameter_eeprom.cpp) and a host that prepares an EEPROM both use this file.
+// (hal/avr/eeprom.cpp) and a host that prepares an EEPROM both use this file.
 //
 //   byte 0   u16  layout     kParameterLayout: the table these numbers belong to
 //   byte 2   u16  sequence   the copy with the higher one (modulo 2^16) is the newer

@@ -3,10 +3,10 @@
 #include "firmware/parameters/parameters.h"
 
 #include "firmware/parameters/algorithms_in_build.h"
-#include "firmware/parameters/parameter_table.h"
 #include "hal/program_memory.h"
 
 namespace screed {
+
 namespace {
 
 // Flash is scarce and the least value small, or the greatest one with the other sign: seven bits

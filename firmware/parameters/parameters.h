@@ -2,7 +2,7 @@
 //
 // The table is a macro so that numbers, accessors, defaults, range check and the host's listing
 // (names, documentation, experiment files) are made from the same lines and cannot drift apart.
-// Text stays out of the MCU image: parameters.cpp has the table of parameter_table.h on hosts
+// Text stays out of the MCU image: parameters.cpp has the table of parameters.h on hosts
 // alone.
 #pragma once
 
@@ -120,5 +120,22 @@ struct Parameters {
 
 /// Whether a robot takes the parameter of this number while it is armed or runs.
 bool changes_while_running(uint8_t number);
+
+// The parameter table as text, for hosts: names, units, ranges and meanings for experiment files
+// and listings. Not for the MCU image, which has no room for the strings.
+
+struct ParameterInfo {
+  uint8_t number;
+  const char* name;
+  const char* unit;
+  int16_t min;
+  int16_t max;
+  int16_t default_value;
+  const char* meaning;
+};
+
+/// By their numbers. Defined in parameters.cpp, so that texts and ranges, which grow with the
+/// algorithms, are compiled once.
+extern const ParameterInfo kParameterTable[Parameters::kCount];
 
 }  // namespace screed

@@ -10,6 +10,7 @@
 #include "firmware/protocol/e2e.h"
 
 namespace screed {
+
 namespace {
 
 // The EEPROM takes a byte a tick, and two copies at first.

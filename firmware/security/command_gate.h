@@ -15,7 +15,6 @@
 
 #include "firmware/parameters/kept.h"
 #include "firmware/security/command_mac.h"
-#include "firmware/security/credentials.h"
 #include "hal/sample.h"
 
 namespace screed {

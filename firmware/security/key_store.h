@@ -1,5 +1,5 @@
 // How the key and the number of starts lie in the robot's EEPROM. Pure bytes: the robot's driver
-// (hal/avr/credential_eeprom.cpp) and a host that prepares an EEPROM both use this file.
+// (hal/avr/eeprom.cpp) and a host that prepares an EEPROM both use this file.
 //
 //   byte 0   16   key
 //   byte 16  u8   robot id
@@ -19,7 +19,7 @@
 
 #include <stdint.h>
 
-#include "firmware/security/credentials.h"
+#include "firmware/security/command_mac.h"
 
 namespace screed {
 

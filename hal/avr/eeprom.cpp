@@ -2,9 +2,12 @@
 #include "hal/avr/eeprom.h"
 
 #include <avr/io.h>
+#include <avr/pgmspace.h>
+#include <string.h>
 #include <util/atomic.h>
 
 namespace screed {
+
 namespace avr {
 namespace {
 
@@ -49,4 +52,164 @@ void eeprom_step() {
 }
 
 }  // namespace avr
+
+// The parameters in the MCU's EEPROM.
+
+namespace avr {
+namespace {
+
+const Parameters kDefaults PROGMEM;
+
+/// Parameters that are filled later: their default values would cost a constructor's code.
+union LateParameters {
+  uint8_t bytes[sizeof(Parameters)];
+  Parameters value;
+  constexpr LateParameters() : bytes() {}
+};
+LateParameters in_force;  // what the robot drives with: of this start, and remote changes since
+
+/// A copy whose values can be looked at.
+union Copy {
+  ParameterCopy bytes;
+  struct {
+    uint8_t header[kParameterHeaderSize];
+    Parameters values;
+  } parts;
+  constexpr Copy() : bytes() {}
+};
+
+Copy copy;  // what is stored, or is being written
+
+struct State {
+  StoreState store;
+  bool has_good_copy;
+  uint8_t copies;  // still to write
+  uint8_t next_copy;
+  uint16_t next_sequence;
+  uint8_t pending;  // a parameter that waits to be stored, by its number; 0: none
+  int16_t pending_value;
+};
+State state;
+
+__attribute__((noinline)) void read_copy(uint8_t index) {
+  eeprom_read(parameter_copy_address(index), copy.bytes.bytes, kParameterCopySize);
+}
+
+void put(Parameters& parameters, uint8_t number, int16_t value) {
+  parameters.values[number - 1] = value;
+}
+
+__attribute__((noinline)) void take_defaults() {
+  memcpy_P(&copy.parts.values, &kDefaults, sizeof(kDefaults));
+}
+
+/// Begins to write copy.
+void begin_save() {
+  seal_copy(state.next_sequence, copy.bytes);
+  state.next_sequence = static_cast<uint16_t>(state.next_sequence + 1U);
+  // A store without a good copy gets two at once.
+  state.copies = state.has_good_copy ? 1 : kParameterCopies;
+  state.has_good_copy = true;
+}
+
+}  // namespace
+
+void parameter_eeprom_init() {
+  CopyState states[kParameterCopies];
+  uint16_t sequences[kParameterCopies];
+  for (uint8_t i = 0; i < kParameterCopies; ++i) {
+    read_copy(i);
+    states[i] = check_copy(copy.bytes);
+    sequences[i] = copy_sequence(copy.bytes);
+  }
+  const StoreChoice choice = choose_copy(states[0], sequences[0], states[1], sequences[1]);
+  state.store = choice.state;
+  state.has_good_copy = choice.state == StoreState::kStored;
+  state.next_copy = choice.next_copy;
+  state.next_sequence = choice.next_sequence;
+  if (choice.state == StoreState::kStored) {
+    read_copy(choice.copy);
+  } else {
+    take_defaults();
+  }
+  in_force.value = copy.parts.values;
+}
+
+StoreState parameter_store_state() {
+  return state.store;
+}
+const Parameters& parameters_of_start() {
+  return in_force.value;
+}
+
+bool parameter_save_defaults() {
+  if (parameter_saving()) return false;
+  take_defaults();
+  begin_save();
+  return true;
+}
+
+void parameter_store(uint8_t number, int16_t value) {
+  put(in_force.value, number, value);
+  state.pending = number;
+  state.pending_value = value;
+}
+
+bool parameter_saving() {
+  return state.copies != 0 || state.pending != 0 || eeprom_busy();
+}
+
+__attribute__((noinline)) void parameter_eeprom_step() {
+  eeprom_step();
+  if (eeprom_busy()) return;
+  if (state.copies == 0) {
+    if (state.pending == 0) return;
+    Parameters& stored = copy.parts.values;
+    put(stored, state.pending, state.pending_value);
+    state.pending = 0;
+    // What was saved for the next start may contradict it; what the robot drives with does not.
+    if (!stored.valid()) stored = in_force.value;
+    begin_save();
+  }
+  eeprom_write(parameter_copy_address(state.next_copy), copy.bytes.bytes, kParameterCopySize);
+  state.next_copy = static_cast<uint8_t>(1 - state.next_copy);
+  --state.copies;
+}
+
+}  // namespace avr
+
+// Key and number of starts in the EEPROM.
+
+namespace avr {
+namespace {
+
+struct State {
+  Credentials in_force;
+  CredentialRecord record;  // what is being written
+};
+State state;
+
+}  // namespace
+
+void credential_eeprom_init() {
+  eeprom_read(kCredentialRecordAddress, state.record.bytes, kCredentialRecordSize);
+  if (!begin_start(state.record, state.in_force)) return;
+  const uint8_t slot = epoch_slot_offset(state.in_force.boot_epoch);
+  eeprom_write(kCredentialRecordAddress + slot, state.record.bytes + slot, kEpochSlotSize);
+  while (eeprom_busy()) eeprom_step();
+}
+
+const Credentials& credentials() {
+  return state.in_force;
+}
+
+bool credential_eeprom_store(const uint8_t (&key)[kKeySize]) {
+  if (eeprom_busy()) return false;
+  put_key(state.record, key);
+  eeprom_write(kCredentialRecordAddress, state.record.bytes, kCredentialRecordSize);
+  return true;
+}
+
+}  // namespace avr
+
 }  // namespace screed

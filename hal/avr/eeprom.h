@@ -3,7 +3,11 @@
 
 #include <stdint.h>
 
+#include "firmware/parameters/parameter_store.h"
+#include "firmware/security/key_store.h"
+
 namespace screed {
+
 namespace avr {
 
 /// Waits for a write that is under way, 3.4 ms at most.
@@ -17,4 +21,48 @@ bool eeprom_busy();
 void eeprom_step();
 
 }  // namespace avr
+
+// The parameters in the MCU's EEPROM, in the format of firmware/parameters/parameter_store.h.
+
+namespace avr {
+
+/// Reads the store; called once, before the others.
+void parameter_eeprom_init();
+
+StoreState parameter_store_state();
+
+/// Of this start: what was stored, or the defaults.
+const Parameters& parameters_of_start();
+
+/// Begins to write the defaults, one byte a tick; they hold from the next start on. False when a
+/// write is under way.
+bool parameter_save_defaults();
+/// Stores one parameter, by its number in the table, from 1, among those that are stored. Begins
+/// once nothing else is being written. Others of the robot must not contradict it. At most one in
+/// 1.5 s.
+void parameter_store(uint8_t number, int16_t value);
+/// The EEPROM is being written, by this or by others.
+bool parameter_saving();
+
+/// Writes the next byte when the EEPROM is ready; called once a tick, never waits.
+void parameter_eeprom_step();
+
+}  // namespace avr
+
+// Key and number of starts in the EEPROM, in the format of firmware/security/key_store.h.
+
+namespace avr {
+
+/// Reads key and number, and writes the number of this start, 14 ms; called once, before the
+/// others.
+void credential_eeprom_init();
+
+const Credentials& credentials();
+
+/// Begins to store a key and the robot's id behind it, which hold from the next start on. False
+/// while something else is being written.
+bool credential_eeprom_store(const uint8_t (&key)[kKeySize]);
+
+}  // namespace avr
+
 }  // namespace screed

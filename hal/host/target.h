@@ -8,7 +8,7 @@
 
 #include "firmware/parameters/board_constants.h"
 #include "firmware/parameters/parameters.h"
-#include "firmware/security/credentials.h"
+#include "firmware/security/command_mac.h"
 #include "hal/sample.h"
 
 namespace screed {

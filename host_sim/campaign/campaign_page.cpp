@@ -14,9 +14,9 @@
 #include "host_sim/campaign/cell_comparison.h"
 #include "host_sim/campaign/cell_curves.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/intervals.h"
 #include "host_sim/core/json.h"
-#include "host_sim/leveling/leveling_point.h"
+#include "host_sim/core/statistics.h"
+#include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/render/report/page_file.h"
 #include "version.h"
 

@@ -2,7 +2,7 @@
 // between cells, all over the seeds, which are the same in each.
 //
 // A run that has no value (it failed, or its metric is not defined) leaves its pair out; how many
-// there were stands beside every figure. Intervals are those of host_sim/core/paired_statistics.h.
+// there were stands beside every figure. Intervals are those of host_sim/core/statistics.h.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/core/intervals.h"
-#include "host_sim/core/paired_statistics.h"
+#include "host_sim/core/statistics.h"
 
 namespace screed {
 

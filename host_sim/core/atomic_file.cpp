@@ -2,14 +2,16 @@
 #include "host_sim/core/atomic_file.h"
 
 #include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "host_sim/core/errors.h"
 
 namespace screed {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,6 +80,62 @@ void write_file(const fs::path& path, std::string_view text) {
   AtomicFile file(path);
   file.write(text);
   file.commit();
+}
+
+// Writing beside, then moving.
+
+namespace fs = std::filesystem;
+
+// The process number keeps two programs that write the same series apart.
+PartialFolder::PartialFolder(const fs::path& folder)
+    : folder_(folder), partial_(folder / (std::to_string(getpid()) + ".partial")) {
+  std::error_code error;
+  fs::create_directory(partial_, error);
+  if (error) throw RunError(partial_.string() + ": cannot create the folder: " + error.message());
+}
+
+PartialFolder::~PartialFolder() {
+  std::error_code ignored;
+  fs::remove_all(partial_, ignored);
+}
+
+void PartialFolder::commit() {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(partial_))
+    files.push_back(entry.path());
+  for (const fs::path& file : files) {
+    const fs::path to = folder_ / file.filename();
+    fs::rename(file, to, error);
+    if (error) throw RunError(to.string() + ": cannot be written: " + error.message());
+  }
+}
+
+// Making and removing folders.
+
+namespace fs = std::filesystem;
+
+MadeFolders::~MadeFolders() {
+  std::error_code not_empty;
+  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
+    fs::remove(*folder, not_empty);
+  }
+}
+
+fs::path MadeFolders::make(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> missing;
+  for (fs::path it = folder; !it.empty() && !fs::exists(it, error); it = it.parent_path()) {
+    missing.push_back(it);
+  }
+  for (auto it = missing.rbegin(); it != missing.rend(); ++it) {
+    if (fs::create_directory(*it, error)) made_.push_back(*it);
+  }
+  if (std::error_code unreadable; !fs::is_directory(folder, unreadable)) {
+    throw RunError(folder.string() + ": cannot create the folder" +
+                   (error ? ": " + error.message() : ""));
+  }
+  return folder;
 }
 
 }  // namespace screed

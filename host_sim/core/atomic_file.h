@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace screed {
 
@@ -58,5 +59,46 @@ class AtomicFile {
 
 /// A whole file at once.
 void write_file(const std::filesystem::path& path, std::string_view text);
+
+// A series of files that appears in its folder complete or not at all: written into a folder beside
+// it and then moved.
+
+/// Files of the same names in the folder stay as they were until commit(), and for ever without it.
+/// Every function throws RunError, one line with the path and the reason.
+class PartialFolder {
+ public:
+  /// `folder` exists. partial() lies in it, so that moving costs nothing.
+  explicit PartialFolder(const std::filesystem::path& folder);
+  PartialFolder(const PartialFolder&) = delete;
+  PartialFolder& operator=(const PartialFolder&) = delete;
+  ~PartialFolder();
+
+  /// Where to write.
+  const std::filesystem::path& partial() const { return partial_; }
+  /// Moves every file that was written into the folder.
+  void commit();
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path partial_;
+};
+
+// Folders that a task makes for its files: those that stay empty go again.
+
+class MadeFolders {
+ public:
+  MadeFolders() = default;
+  MadeFolders(const MadeFolders&) = delete;
+  MadeFolders& operator=(const MadeFolders&) = delete;
+  /// Removes what was made and is empty.
+  ~MadeFolders();
+
+  /// Makes the folder, with the missing ones above it; one that exists stays as it is. Returns it.
+  /// Throws RunError, one line with the path and the reason.
+  std::filesystem::path make(const std::filesystem::path& folder);
+
+ private:
+  std::vector<std::filesystem::path> made_;  ///< outer ones first
+};
 
 }  // namespace screed

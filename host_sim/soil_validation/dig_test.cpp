@@ -7,8 +7,8 @@
 #include <numbers>
 #include <optional>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
-#include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/soil_validation/check_range.h"
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
-#include "host_sim/core/gravity.h"
 #include "host_sim/soil_validation/check_range.h"
 
 namespace screed {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/soil/passive_pressure.h"
-#include "host_sim/physics/terrain/shear_law.h"
+#include "host_sim/physics/soil/soil_laws.h"
+#include "host_sim/physics/terrain/shear_field.h"
 #include "host_sim/soil_validation/check_range.h"
 
 namespace screed {

@@ -9,8 +9,8 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/cholesky.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
-#include "host_sim/core/gravity.h"
 
 namespace screed {
 namespace {

@@ -21,14 +21,12 @@
 #include <vector>
 
 #include "host_sim/physics/soil/material_flow.h"
-#include "host_sim/physics/soil/power_table.h"
 #include "host_sim/physics/soil/soil_grid.h"
+#include "host_sim/physics/soil/soil_laws.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/terrain.h"
-#include "host_sim/standin/belt_fit.h"
 #include "host_sim/standin/belt_motion.h"
 #include "host_sim/standin/planar_pose.h"
-#include "host_sim/standin/track_geometry.h"
 
 namespace screed {
 

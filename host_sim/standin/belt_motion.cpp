@@ -9,9 +9,9 @@
 #include "hal/sample.h"
 #include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
-#include "host_sim/core/gravity.h"
 
 namespace screed {
+
 namespace {
 constexpr double kRollingSpeed_m_per_s = 0.01;  // at which rolling resists in full
 constexpr double kMinContact_m = 0.002;         // of a patch: what touches less is as much

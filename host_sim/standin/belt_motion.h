@@ -1,3 +1,30 @@
+// What the stand-in's closed forms do not say by themselves: five numbers, the same for all soils,
+// chosen on drives in the physics (docs/standin.md).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+#include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/standin/planar_pose.h"
+
+namespace screed {
+
+struct BeltFit {
+  /// Strength across a belt over that along it.
+  double sideways = 2.0;
+  /// Resistance to rolling over load.
+  double rolling = 0.02;
+  /// Stiffness of unloading, over the soil's mean stiffness at 2 kPa, where the soil's own E is
+  /// more: so that one compacted cell does not hold a belt up.
+  double unloading = 10.0;
+  /// Of the volume that slip digs, over that of the soil's law.
+  double digging = 1.15;
+  /// Of the way that a slope carries what is dug, over that of the soil's law.
+  double downhill = 0.7;
+};
+
 // How a robot on two belts moves over soil, in closed form: a planar body, and soil that shears
 // below its belts.
 //
@@ -14,18 +41,6 @@
 // the soil is. A belt that stands shears until it holds, and then stays: what is not driven and not
 // on too steep a slope stands for ever.
 // Not modelled: soil pushed ahead and aside by its density, a chassis that touches the ground.
-#pragma once
-
-#include <Eigen/Core>
-#include <array>
-#include <cstddef>
-
-#include "host_sim/physics/soil/soil_parameters.h"
-#include "host_sim/standin/belt_fit.h"
-#include "host_sim/standin/planar_pose.h"
-#include "host_sim/standin/track_geometry.h"
-
-namespace screed {
 
 inline constexpr std::size_t kBeltPatches = 3;  // of a belt, from the front to the rear
 

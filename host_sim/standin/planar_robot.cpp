@@ -6,7 +6,6 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/constants.h"
-#include "host_sim/core/gravity.h"
 #include "host_sim/core/rotation.h"
 
 namespace screed {

@@ -8,11 +8,10 @@
 #include <cstdint>
 
 #include "host_sim/physics/terrain/height_field.h"
-#include "host_sim/physics/vehicle/battery.h"
-#include "host_sim/physics/vehicle/drive_shaft.h"
+#include "host_sim/physics/vehicle/drive_train.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
 #include "host_sim/physics/world/environment.h"
-#include "host_sim/standin/driving_state.h"
+#include "host_sim/standin/planar_pose.h"
 
 namespace screed {
 

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "firmware/robot/robot.h"
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/made_folders.h"
 #include "host_sim/run/world/world.h"
 #include "host_sim/run/world/world_setup.h"
 #include "nn/slip/slip_archive.h"

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "hal/sample.h"
-#include "host_sim/leveling/robot_scale.h"
+#include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/physics/terrain/low_pass.h"
-#include "host_sim/physics/terrain/terrain_change.h"
+#include "host_sim/physics/terrain/terrain_statistics.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/session/export.h"

@@ -9,7 +9,6 @@
 #include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/gravity.h"
 #include "host_sim/core/rotation.h"
 #include "host_sim/physics/vehicle/vehicle_parts.h"
 #include "host_sim/physics/world/wall_clearance.h"

@@ -17,7 +17,7 @@
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/world/environment.h"
 #include "host_sim/physics/world/plant_options.h"
-#include "host_sim/standin/driving_state.h"
+#include "host_sim/standin/planar_pose.h"
 #include "host_sim/standin/planar_robot.h"
 #include "nn/surrogate/surrogate.h"
 #include "nn/terrain/terrain_network.h"

@@ -4,11 +4,10 @@
 
 #include "host_sim/core/errors.h"
 #include "tests/fuzz/require.h"
+#include "tools/schema/code.h"
 #include "tools/schema/dbc.h"
-#include "tools/schema/host_tables.h"
-#include "tools/schema/message_code.h"
+#include "tools/schema/documentation.h"
 #include "tools/schema/schema_check.h"
-#include "tools/schema/wireshark_tables.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   const std::string text(reinterpret_cast<const char*>(bytes), size);

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "host_sim/ground_station/telemetry/log_decoder.h"
+#include "host_sim/ground_station/telemetry/candump_log.h"
 #include "tests/fuzz/require.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {

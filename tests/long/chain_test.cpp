@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/gravity.h"
 #include "tests/sitl/test_drive.h"
 #include "tests/step_one.h"
 

@@ -10,7 +10,7 @@
 #include "firmware/robot/supervisor.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
-#include "host_sim/ground_station/link/robot_log.h"
+#include "host_sim/ground_station/link/robot_history.h"
 #include "host_sim/run/session/session_reader.h"
 #include "tests/long/robot_at_port.h"
 #include "tests/sitl/background.h"

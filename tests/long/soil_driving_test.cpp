@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "host_sim/physics/soil/soil_bed.h"
-#include "host_sim/physics/terrain/terrain_change.h"
+#include "host_sim/physics/terrain/terrain_statistics.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/gravity.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/world/wall_clearance.h"
 #include "tests/sitl/test_drive.h"

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "firmware/parameters/parameter_store.h"
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "firmware/robot/supervisor.h"
 #include "hal/avr/reset_cause.h"
 #include "host_sim/devices/mcu/board.h"

@@ -8,7 +8,7 @@
 
 #include "firmware/robot/robot.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/devices/sensors/calibration_motion.h"
+#include "host_sim/devices/sensors/imu_model.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/simulation/parity.h"
 #include "host_sim/run/world/image_robot.h"

@@ -11,7 +11,6 @@
 #include "firmware/control/track_speed_control.h"
 #include "firmware/estimation/attitude.h"
 #include "firmware/estimation/position_estimate.h"
-#include "firmware/estimation/site_walls.h"
 #include "firmware/leveling/leveling.h"
 #include "firmware/math/fixed.h"
 #include "firmware/math/random.h"

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "firmware/math/crc16.h"
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "firmware/protocol/e2e.h"
 
 namespace screed::mcu {

@@ -6,7 +6,7 @@
 
 #include "firmware/parameters/parameters.h"
 #include "firmware/protocol/messages.h"
-#include "host_sim/ground_station/station/command_signer.h"
+#include "host_sim/ground_station/station/command_key.h"
 
 namespace screed::mcu {
 

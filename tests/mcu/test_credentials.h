@@ -1,7 +1,7 @@
 // The key of test images and of the ground stations that talk to them. Runs on any machine.
 #pragma once
 
-#include "firmware/security/credentials.h"
+#include "firmware/security/command_mac.h"
 
 namespace screed {
 

@@ -9,8 +9,8 @@ PORTABLE_CXX := aarch64-linux-gnu-g++ -std=c++20 $(COMMON_FLAGS) -Wno-psabi -idi
   -idirafter $(PORTABLE)/include
 PORTABLE_CORE_ALONE := core/elementary core/nimh_cell core/record core/lanes/instruction_set physics/world/wall_clearance \
   ground_station/telemetry/candump_line \
-  $(addprefix ground_station/station/,command_key command_signer ground_end ground_station position_fixes) \
-  $(addprefix run/world/,world native_robot robot_devices robot_number without_simavr)
+  $(addprefix ground_station/station/,command_key ground_station) \
+  $(addprefix run/world/,world without_simavr)
 PORTABLE_CORE_FOLDERS := firmware $(patsubst %/,%,$(wildcard firmware/*/)) nn/infer hal/host \
   $(addprefix host_sim/,devices/sensors devices/radio leveling standin physics/kernels physics/soil physics/terrain physics/vehicle)
 PORTABLE_CORE_SOURCES := $(PORTABLE_CORE_ALONE:%=host_sim/%.cpp) $(wildcard $(PORTABLE_CORE_FOLDERS:%=%/*.cpp))

@@ -9,7 +9,7 @@
 
 #include "firmware/security/command_gate.h"
 #include "host_sim/core/random.h"
-#include "host_sim/ground_station/station/command_signer.h"
+#include "host_sim/ground_station/station/command_key.h"
 
 namespace screed {
 namespace {

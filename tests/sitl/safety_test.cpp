@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host_sim/core/display_units.h"
+#include "host_sim/core/constants.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "host_sim/core/gravity.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/physics/terrain/rigid_terrain.h"
 #include "tests/sitl/test_drive.h"
 

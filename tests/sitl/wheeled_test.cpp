@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host_sim/core/gravity.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/soil_validation/wheel_limit.h"
 #include "tests/sitl/test_drive.h"
 #include "tests/step_one.h"

@@ -9,7 +9,7 @@
 #include "boards/a_star_32u4/board.h"
 #include "firmware/protocol/e2e.h"
 #include "firmware/robot/robot.h"
-#include "host_sim/ground_station/station/command_signer.h"
+#include "host_sim/ground_station/station/command_key.h"
 #include "tests/unit/firmware/control/simulated_track.h"
 
 namespace screed {

@@ -13,7 +13,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/random.h"
-#include "host_sim/physics/world/imu_truth.h"
+#include "host_sim/physics/world/environment.h"
 
 namespace screed {
 
@@ -97,5 +97,13 @@ class ImuModel {
   double pressure_bias_hpa_;
   uint32_t ticks_ = 0;
 };
+
+// A person who takes the robot into the hands and turns it over, as `screed calibrate` asks: what
+// its IMU feels. A script over time, again and again; knows no physics and no robot.
+
+/// True motion over the tick that ends at time_s: level, six positions held still, then turned
+/// slowly through all directions, and level again. The whole takes kCalibrationMotionPeriod_s.
+constexpr double kCalibrationMotionPeriod_s = 126.0;
+ImuTruth calibration_motion(double time_s);
 
 }  // namespace screed

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "host_sim/ground_station/calibration/imu_collector.h"
+#include "host_sim/ground_station/calibration/imu_calibration.h"
 #include "host_sim/ground_station/link/link.h"
 #include "host_sim/ground_station/link/text_canvas.h"
 

@@ -8,8 +8,8 @@
 #include <chrono>
 #include <string>
 
-#include "host_sim/ground_station/link/file_descriptor.h"
 #include "host_sim/ground_station/link/link.h"
+#include "host_sim/ground_station/link/pseudo_terminal.h"
 
 struct can_frame;  // <linux/can.h>
 

@@ -1,7 +1,5 @@
-// A ground station's side of a link: heartbeats, signed commands repeated until they are answered,
-// parameters. Knows the link and the schema; is given a clock, so that tests bring their own.
-//
-// Everything happens in pump(): what arrives is taken, what is due is sent. Nothing else waits.
+// A robot's answer to a command, in words: what it refused, in which state, and what to do about
+// it.
 #pragma once
 
 #include <chrono>
@@ -12,11 +10,35 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/ground_station/link/answer_text.h"
 #include "host_sim/ground_station/link/link.h"
-#include "host_sim/ground_station/station/command_signer.h"
+#include "host_sim/ground_station/station/command_key.h"
+#include "host_sim/ground_station/telemetry/latest_telemetry.h"
 
 namespace screed {
+
+struct CommandAnswer {
+  uint8_t op = 0;
+  uint8_t result = 0;  ///< 0: done
+  uint16_t detail = 0;
+
+  bool done() const { return result == 0; }
+};
+
+/// How the reader gives commands: by `screed send`, or by the keys of the monitor.
+enum class CommandStyle : uint8_t { kProgram, kKeys };
+
+/// "done", "refused: disarmed; arm first: screed send arm". `robot`: what it says of itself.
+std::string answer_text(const CommandAnswer& answer, const LatestTelemetry& robot, uint64_t now_us,
+                        CommandStyle style = CommandStyle::kProgram);
+
+/// What stands behind "refused: "; empty when it is done.
+std::string refusal_text(const CommandAnswer& answer, const LatestTelemetry& robot, uint64_t now_us,
+                         CommandStyle style = CommandStyle::kProgram);
+
+// A ground station's side of a link: heartbeats, signed commands repeated until they are answered,
+// parameters. Knows the link and the schema; is given a clock, so that tests bring their own.
+//
+// Everything happens in pump(): what arrives is taken, what is due is sent. Nothing else waits.
 
 struct SessionOptions {
   CommandKey key = test_key();

@@ -8,7 +8,7 @@
 
 #include "host_sim/ground_station/link/can_link.h"
 #include "host_sim/ground_station/link/pseudo_terminal.h"
-#include "host_sim/ground_station/station/ground_port.h"
+#include "host_sim/ground_station/station/ground_station.h"
 
 namespace screed {
 

@@ -1,9 +1,9 @@
-// A virtual serial port.
+// Waiting for a file descriptor.
 #include "host_sim/ground_station/link/pseudo_terminal.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <termios.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -13,6 +13,17 @@
 #include "host_sim/core/errors.h"
 
 namespace screed {
+
+Readiness wait_readable(int descriptor, std::chrono::milliseconds wait) {
+  pollfd entry{descriptor, POLLIN, 0};
+  const int ready = poll(&entry, 1, static_cast<int>(wait.count()));
+  if (ready <= 0) return Readiness::kNothing;  // also a signal: the caller comes back
+  if ((entry.revents & POLLIN) != 0) return Readiness::kReadable;
+  return Readiness::kBroken;
+}
+
+// A virtual serial port.
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "firmware/protocol/e2e.h"
 #include "firmware/protocol/messages.h"
 #include "host_sim/ground_station/telemetry/schema.h"

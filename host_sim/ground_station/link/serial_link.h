@@ -1,9 +1,5 @@
-// A radio module on a serial port: SLCAN lines, as they are or in packets of the XBee's API mode.
-// Also for the pseudo terminal of a simulation, which looks the same.
-//
-// A port that vanishes (the USB stick is pulled) is looked for twice a second and taken again,
-// under the name it was opened with or, when it has come back as another tty, under the name that
-// stays with the stick (/dev/serial/by-id).
+// The serial ports of this machine that a radio module or a robot may be behind, for messages about
+// one that is not there.
 #pragma once
 
 #include <chrono>
@@ -13,12 +9,27 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
-#include "host_sim/ground_station/link/file_descriptor.h"
 #include "host_sim/ground_station/link/link.h"
+#include "host_sim/ground_station/link/pseudo_terminal.h"
 #include "host_sim/ground_station/link/xbee_api.h"
 
 namespace screed {
+
+/// USB adapters and boards, serial lines over Bluetooth and of single-board computers, by name.
+/// `devices` holds the device files.
+std::vector<std::string> serial_ports(const std::filesystem::path& devices = "/dev");
+
+/// "no such port; serial ports here: /dev/ttyACM0, /dev/ttyUSB0" or "...: none".
+std::string no_such_port(const std::filesystem::path& devices = "/dev");
+
+// A radio module on a serial port: SLCAN lines, as they are or in packets of the XBee's API mode.
+// Also for the pseudo terminal of a simulation, which looks the same.
+//
+// A port that vanishes (the USB stick is pulled) is looked for twice a second and taken again,
+// under the name it was opened with or, when it has come back as another tty, under the name that
+// stays with the stick (/dev/serial/by-id).
 
 struct SerialOptions {
   int baud = 57600;  ///< one the system has a name for: 9600 .. 230400

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/ground_station/link/file_descriptor.h"
 #include "host_sim/ground_station/link/link.h"
+#include "host_sim/ground_station/link/pseudo_terminal.h"
 
 namespace screed {
 

@@ -1,13 +1,58 @@
-// The ground station of a simulated run.
+// Position fixes of a simulated camera.
 #include "host_sim/ground_station/station/ground_station.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "firmware/protocol/e2e.h"
 #include "hal/sample.h"
 #include "host_sim/ground_station/telemetry/candump_line.h"
 
 namespace screed {
+
+namespace {
+
+// Fixes go up in ticks of their own: heartbeats take every 20th, other commands 12 of 25.
+constexpr std::uint64_t kSlotTicks = kTickRate_hz / 4;
+constexpr std::uint64_t kSlot = 7;
+constexpr double kMaxCm = 2047.0;  // 12 bits
+
+std::int16_t centimetres(double metres) {
+  return static_cast<std::int16_t>(std::lround(std::clamp(metres * 100.0, -kMaxCm, kMaxCm)));
+}
+
+}  // namespace
+
+PositionFixes::PositionFixes(std::uint64_t seed, const PositionFixOptions& options)
+    : options_(options),
+      period_ticks_(options.period_s <= 0.0
+                        ? 0
+                        : kSlotTicks * static_cast<std::uint64_t>(
+                                           std::max(1L, std::lround(options.period_s * 4.0)))),
+      random_(seed, "position fixes"),
+      outages_(seed, "position fix outages"),
+      outage_begins_s_(next_outage_s()) {}
+
+double PositionFixes::next_outage_s() {
+  if (options_.outage_every_s <= 0.0) return std::numeric_limits<double>::infinity();
+  return -options_.outage_every_s * std::log(1.0 - outages_.uniform());
+}
+
+std::optional<DriveArgument> PositionFixes::at(std::uint64_t tick, double x_m, double y_m) {
+  if (period_ticks_ == 0 || tick % period_ticks_ != kSlot) return std::nullopt;
+  // Drawn for every fix: outages leave the noise of the others as it is.
+  const double x = x_m + options_.sigma_m * random_.normal();
+  const double y = y_m + options_.sigma_m * random_.normal();
+  const double now_s = static_cast<double>(tick) / kTickRate_hz;
+  while (now_s >= outage_begins_s_ + options_.outage_s)
+    outage_begins_s_ += options_.outage_s + next_outage_s();
+  if (now_s >= outage_begins_s_) return std::nullopt;
+  return DriveArgument{centimetres(x), centimetres(y)};
+}
+
+// The ground station of a simulated run.
+
 namespace {
 
 constexpr uint64_t kHeartbeatTicks = kTickRate_hz / 5;
@@ -83,6 +128,31 @@ std::vector<uint8_t> GroundStation::transmit(uint64_t now_us) {
   }
   ++ticks_;
   return lines;
+}
+
+// The ground end of the radio.
+
+void GroundEnd::tick(uint64_t now_us, GroundStation& station, RadioLink& uplink,
+                     RadioLink& downlink) {
+  if (port_ != nullptr) {
+    const std::vector<uint8_t> bytes = port_->receive();
+    listen(bytes);
+    uplink.send(now_us, bytes);
+  }
+  if (!handed_over_) uplink.send(now_us, station.transmit(now_us));
+  const std::span<const uint8_t> arrived = downlink.receive(now_us, SIZE_MAX);
+  station.receive(now_us, arrived);
+  if (port_ != nullptr) port_->send(arrived);
+}
+
+void GroundEnd::listen(std::span<const uint8_t> bytes) {
+  CanFrame frame{};
+  for (const uint8_t byte : bytes) {
+    if (outside_.feed(byte, frame) && frame.id == kIdGroundHeartbeat &&
+        e2e_check(frame.id, frame.data, frame.size)) {
+      handed_over_ = true;
+    }
+  }
 }
 
 }  // namespace screed

@@ -1,7 +1,5 @@
-// The ground station of a simulated run: heartbeat, arm, run, drive commands up; everything that
-// comes down is logged.
-//
-// The log is `candump -L` text, so that can-utils, Wireshark and python-can read it as it is.
+// The ground end of a simulated radio: the simulated ground station with its position fixes, and
+// the port for programs outside.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +11,60 @@
 #include "firmware/protocol/messages.h"
 #include "firmware/protocol/slcan.h"
 #include "firmware/robot/supervisor.h"
-#include "host_sim/ground_station/station/command_signer.h"
-#include "host_sim/ground_station/station/position_fixes.h"
+#include "host_sim/core/random.h"
+#include "host_sim/devices/radio/radio_link.h"
+#include "host_sim/ground_station/station/command_key.h"
 
 namespace screed {
+
+// The ground end of the radio for programs outside of the simulation: bytes as the radio module
+// gives them out and takes them in.
+
+class GroundPort {
+ public:
+  GroundPort() = default;
+  GroundPort(const GroundPort&) = delete;
+  GroundPort& operator=(const GroundPort&) = delete;
+  virtual ~GroundPort() = default;
+
+  /// What has come down in this tick. Never waits.
+  virtual void send(std::span<const uint8_t> bytes) = 0;
+  /// What is to go up. Never waits.
+  virtual std::vector<uint8_t> receive() = 0;
+};
+
+// Position fixes as an overhead camera makes them: late by nothing, with noise, and missing during
+// outages.
+
+struct PositionFixOptions {
+  double period_s = 0.0;        ///< 0: no fixes; else rounded to 0.25 s, at least that
+  double sigma_m = 0.02;        ///< standard deviation along each axis
+  double outage_every_s = 0.0;  ///< mean time from an outage to the next one; 0: none
+  double outage_s = 10.0;       ///< length of each
+};
+
+class PositionFixes {
+ public:
+  PositionFixes(std::uint64_t seed, const PositionFixOptions& options);
+
+  /// The argument of CommandOp::kPositionFix (cm) for a robot at (x, y), when one is due in this
+  /// tick (of 10 ms, counted from 0) and no outage hides it. To be asked every tick.
+  std::optional<DriveArgument> at(std::uint64_t tick, double x_m, double y_m);
+
+ private:
+  double next_outage_s();
+
+  PositionFixOptions options_;
+  std::uint64_t period_ticks_;
+  WorldRandom random_;
+  WorldRandom outages_;
+  double outage_begins_s_;
+};
+
+// The ground station of a simulated run: heartbeat, arm, run, drive commands up; everything that
+// comes down is logged.
+//
+// The log is `candump -L` text, so that can-utils, Wireshark and python-can read it as it is.
 
 /// What the ground station sends once the robot runs, for the algorithm "drive".
 struct DriveCommand {
@@ -76,6 +124,31 @@ class GroundStation {
   uint64_t ticks_ = 0;
   bool started_ = false;  ///< the robot has been running: it is not started twice
   uint8_t heartbeat_counter_ = 0;
+};
+
+// The ground end of the radio: the simulated ground station, and programs outside that listen and
+// speak beside it.
+//
+// A program that sends heartbeats is a ground station; from its first one the simulated station is
+// silent for good, since two stations would hide each other's loss from the robot.
+
+class GroundEnd {
+ public:
+  /// `port` may be null; it must outlive this.
+  explicit GroundEnd(GroundPort* port) : port_(port) {}
+
+  /// One control tick: what is to be said goes into the uplink, what has come down is taken out.
+  void tick(uint64_t now_us, GroundStation& station, RadioLink& uplink, RadioLink& downlink);
+
+  /// A program outside has taken over.
+  bool handed_over() const { return handed_over_; }
+
+ private:
+  void listen(std::span<const uint8_t> bytes);
+
+  GroundPort* port_;
+  SlcanParser outside_;
+  bool handed_over_ = false;
 };
 
 }  // namespace screed

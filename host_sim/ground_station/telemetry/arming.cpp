@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "firmware/estimation/attitude.h"
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "firmware/protocol/messages.h"
 #include "hal/sample.h"
 

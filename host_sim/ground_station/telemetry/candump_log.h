@@ -1,6 +1,7 @@
 // Files of CAN frames, a line of candump_line.h each.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "host_sim/ground_station/telemetry/candump_line.h"
+#include "host_sim/ground_station/telemetry/schema.h"
 
 namespace screed {
 
@@ -64,6 +66,56 @@ class CandumpReader {
   size_t searched_ = 0;    ///< no end of line stands before this place
   bool too_long_ = false;  ///< the line under way did not fit into the buffer
   uint64_t line_number_ = 0;
+};
+
+// A log of CAN frames as messages: what can be read, and counts of what cannot.
+
+/// One message of a log.
+struct DecodedFrame {
+  uint64_t time_us = 0;
+  const MessageInfo* message = nullptr;
+  uint8_t node = 0;   ///< the robot; 0: the ground
+  uint64_t bits = 0;  ///< the data, for SignalInfo::raw()
+};
+
+/// What became of the lines of a log.
+struct DecodeStatistics {
+  uint64_t lines = 0;     ///< that are not empty
+  uint64_t messages = 0;  ///< decoded
+  uint64_t unreadable_lines = 0;
+  uint64_t first_unreadable_line = 0;  ///< its number; 0: none
+  uint64_t other_frames = 0;           ///< remote, error, FD, 29-bit ids
+  uint64_t unknown_ids = 0;
+  uint64_t wrong_sizes = 0;
+  uint64_t wrong_crcs = 0;
+  uint64_t missing = 0;  ///< messages that the alive counters say were sent and are not in the log
+
+  /// Lines and frames that should be messages and are not.
+  [[nodiscard]] uint64_t damaged() const { return unreadable_lines + wrong_sizes + wrong_crcs; }
+  /// One line for people.
+  [[nodiscard]] std::string text() const;
+};
+
+class LogDecoder {
+ public:
+  /// As CandumpReader.
+  explicit LogDecoder(const std::string& path) : LogDecoder(CandumpReader(path)) {}
+  explicit LogDecoder(CandumpReader reader);
+
+  /// The next message; false at the end of the log. Nothing in a log makes it throw.
+  bool next(DecodedFrame& frame);
+
+  [[nodiscard]] const DecodeStatistics& statistics() const { return statistics_; }
+
+  /// Of a log that was read to its end: throws InputError when it held no message.
+  void expect_messages() const;
+
+ private:
+  void watch_counter(const CanFrame& frame);
+
+  CandumpReader reader_;
+  DecodeStatistics statistics_;
+  std::array<int8_t, 2048> counters_;  ///< the last alive counter of each id; -1: none yet
 };
 
 }  // namespace screed

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "firmware/protocol/messages.h"
 
 namespace screed {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host_sim/core/atomic_file.h"
-#include "host_sim/ground_station/telemetry/log_decoder.h"
+#include "host_sim/ground_station/telemetry/candump_log.h"
 
 namespace screed {
 

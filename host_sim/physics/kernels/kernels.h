@@ -15,7 +15,7 @@
 namespace screed {
 
 constexpr size_t kLanes = 8;
-/// A body that covers a smaller share of a cell has pressed nothing there (cell_history.h).
+/// A body that covers a smaller share of a cell has pressed nothing there (soil_grid.h).
 constexpr double kMinCoveredShare = 1e-3;
 /// So many, rounded up to whole blocks.
 constexpr size_t whole_blocks(size_t count) {
@@ -76,7 +76,7 @@ struct alignas(64) CellBlock {
   double reference[kLanes];       ///< level of the undisturbed surface
   double sunk[kLanes];            ///< plastic sinkage
   double fresh[kLanes];           ///< 1: a new contact
-  double covered_before[kLanes];  ///< as cell_history.h has them; out: as of now
+  double covered_before[kLanes];  ///< as soil_grid.h has them; out: as of now
   double old_sinkage[kLanes];
   double beside[kLanes];
   // Answered by divide_cells:
@@ -116,7 +116,7 @@ struct alignas(64) SpringBlock {
   double sinking[kLanes];  ///< the answer: downward displacement in this step, m
 };
 
-/// Wong and Reece's shape of the stress below a wheel (wheel_stress.h).
+/// Wong and Reece's shape of the stress below a wheel (soil_laws.h).
 struct StressShape {
   bool shaped = false;
   double entry = 0.0;   ///< theta_1, rad
@@ -126,7 +126,7 @@ struct StressShape {
   double scale = 0.0;   ///< of the lift, m
 };
 
-/// z^n as a table of straight lines (power_table.h).
+/// z^n as a table of straight lines (soil_laws.h).
 struct PowerLines {
   const double* lines;  ///< offset and slope of each
   double first;         ///< number of the leading bits of the first one's end

@@ -7,6 +7,7 @@
 #include <utility>
 
 namespace screed {
+
 namespace {
 
 // Lists are renewed when fewer than this share of those they were made for are awake.

@@ -1,3 +1,135 @@
+// All particles of a bed sorted by the cubes of its grid: for those who look at most of them at
+// once. Chains of the grid lead all over the memory; these are read one after the other.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "host_sim/physics/particles/bed_particles.h"
+#include "host_sim/physics/particles/contact_law.h"
+#include "host_sim/physics/particles/sphere_grid.h"
+#include "host_sim/physics/particles/thread_team.h"
+
+namespace screed {
+
+class CellRuns {
+ public:
+  struct Entry {
+    double at[3];
+    int32_t particle;
+    bool awake;
+  };
+
+  void sort(const SphereGrid& grid, const BedParticles& particles) {
+    begin_.assign(grid.cells() + 1, 0);
+    for (size_t i = 0; i < particles.size; ++i) ++begin_[cell(grid, i)];
+    int32_t sum = 0;
+    for (int32_t& begin : begin_) {  // becomes the end of the cell's run
+      sum += begin;
+      begin = sum;
+    }
+    entries_.resize(particles.size);
+    for (size_t i = particles.size; i-- > 0;) {
+      const double* const at = particles.place[i].at;
+      entries_[static_cast<size_t>(--begin_[cell(grid, i)])] = {
+          {at[0], at[1], at[2]}, static_cast<int32_t>(i), particles.state[i] != 0};
+    }
+  }
+
+  /// As SphereGrid::visit_near, with entries.
+  template <class Visit>
+  void visit_near(const SphereGrid& grid, const Eigen::Vector3d& position, double radius,
+                  const Visit& visit) const {
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
+    grid.visit_cells(position - reach, position + reach, [&](int32_t begin, int32_t end) {
+      const auto last = static_cast<size_t>(begin_[static_cast<size_t>(end)]);
+      for (auto i = static_cast<size_t>(begin_[static_cast<size_t>(begin)]); i < last; ++i) {
+        visit(entries_[i]);
+      }
+    });
+  }
+
+ private:
+  static size_t cell(const SphereGrid& grid, size_t particle) {
+    return static_cast<size_t>(grid.cell_of(static_cast<int32_t>(particle)));
+  }
+
+  std::vector<int32_t> begin_;  // of each cell's run, and the end of the last
+  std::vector<Entry> entries_;
+};
+
+// The contacts that particles remember while they are in no list: those of sleepers, and those with
+// running gear.
+
+/// Partners of a particle that are no particles.
+constexpr int32_t kNoPartner = -1;
+constexpr int32_t kFloorPartner = -2;  ///< kFloorPartner - 1 .. kFloorPartner - 4: the walls
+constexpr int32_t kGearPartner = -8;   ///< kGearPartner - n: the n-th body that ever pressed
+
+class ContactStore {
+ public:
+  void resize(size_t particles) {
+    slots_.assign(particles * kSlots, Slot{});
+    kept_.assign(particles, 0);
+  }
+  /// Whether it remembers any contact.
+  bool any(int32_t particle) const { return kept_[static_cast<size_t>(particle)] != 0; }
+
+  /// Null when the particle remembers no such contact.
+  ContactBristle* find(int32_t particle, int32_t partner) {
+    Slot* const slot = slot_of(particle, partner);
+    return slot == nullptr ? nullptr : &slot->bristle;
+  }
+  /// Remembers it from now on. Null when the particle has as many as it can have.
+  ContactBristle* take(int32_t particle, int32_t partner) {
+    Slot* slot = slot_of(particle, partner);
+    if (slot != nullptr) return &slot->bristle;
+    slot = slot_of(particle, kNoPartner);
+    if (slot == nullptr) return nullptr;
+    *slot = {partner, {}};
+    ++kept_[static_cast<size_t>(particle)];
+    return &slot->bristle;
+  }
+  void forget(int32_t particle, int32_t partner) {
+    Slot* const slot = slot_of(particle, partner);
+    if (slot != nullptr) clear(particle, *slot);
+  }
+  void forget_gear(int32_t particle) {
+    Slot* const begin = first_slot(particle);
+    for (Slot* slot = begin; slot != begin + kSlots; ++slot) {
+      if (slot->partner <= kGearPartner) clear(particle, *slot);
+    }
+  }
+
+ private:
+  static constexpr size_t kSlots =
+      12;  // the kissing number; a particle keeps about half of its own
+
+  struct Slot {
+    int32_t partner = kNoPartner;
+    ContactBristle bristle{};
+  };
+
+  Slot* first_slot(int32_t particle) { return &slots_[static_cast<size_t>(particle) * kSlots]; }
+  Slot* slot_of(int32_t particle, int32_t partner) {
+    Slot* const begin = first_slot(particle);
+    Slot* const found = std::find_if(begin, begin + kSlots,
+                                     [&](const Slot& slot) { return slot.partner == partner; });
+    return found == begin + kSlots ? nullptr : found;
+  }
+
+  void clear(int32_t particle, Slot& slot) {
+    slot = {};
+    --kept_[static_cast<size_t>(particle)];
+  }
+
+  std::vector<Slot> slots_;
+  std::vector<uint8_t> kept_;  // slots in use of each particle
+};
+
 // Who is awake, and which contacts must be computed: in groups of neighbouring particles, each of
 // which can be computed by itself.
 //
@@ -5,19 +137,6 @@
 // with the lower number. Its push on the second particle goes to that particle when it is of the
 // same group, else to a row of its own, from which the other group fetches it later, in a fixed
 // order. So no two groups write to the same row, and every sum has one order.
-#pragma once
-
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
-#include "host_sim/physics/particles/bed_particles.h"
-#include "host_sim/physics/particles/cell_runs.h"
-#include "host_sim/physics/particles/contact_store.h"
-#include "host_sim/physics/particles/sphere_grid.h"
-#include "host_sim/physics/particles/thread_team.h"
-
-namespace screed {
 
 /// Contacts of a group in packets, one after the other.
 class ContactList {

@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-#include "host_sim/core/gravity.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/lanes/instruction_set.h"
 #include "host_sim/core/task_progress.h"
 #include "host_sim/physics/particles/bed_kernel.h"
@@ -29,14 +29,12 @@
 #include "host_sim/physics/particles/bed_particles.h"
 #include "host_sim/physics/particles/bed_surface.h"
 #include "host_sim/physics/particles/contact_groups.h"
-#include "host_sim/physics/particles/contact_store.h"
 #include "host_sim/physics/particles/sphere_grid.h"
 #include "host_sim/physics/particles/sphere_law.h"
 #include "host_sim/physics/particles/thread_team.h"
 #include "host_sim/physics/terrain/footprint.h"
 #include "host_sim/physics/terrain/footprint_contact.h"
 #include "host_sim/physics/terrain/height_field.h"
-#include "host_sim/physics/terrain/sphere_set.h"
 #include "host_sim/physics/terrain/terrain.h"
 
 namespace screed {

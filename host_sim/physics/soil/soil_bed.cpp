@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "host_sim/physics/soil/footprint_path.h"
+#include "host_sim/physics/soil/sinking.h"
 
 namespace screed {
 namespace {

@@ -20,12 +20,10 @@
 
 #include "host_sim/physics/kernels/kernels.h"
 #include "host_sim/physics/soil/material_flow.h"
-#include "host_sim/physics/soil/passive_pressure.h"
-#include "host_sim/physics/soil/power_table.h"
 #include "host_sim/physics/soil/sinking.h"
 #include "host_sim/physics/soil/soil_grid.h"
+#include "host_sim/physics/soil/soil_laws.h"
 #include "host_sim/physics/soil/soil_parameters.h"
-#include "host_sim/physics/soil/wheel_stress.h"
 #include "host_sim/physics/terrain/footprint_contact.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/terrain/terrain.h"

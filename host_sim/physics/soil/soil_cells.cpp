@@ -4,9 +4,9 @@
 // The equations of kernels/cell_stress.inc, in the order of its code. n is Bekker's exponent, b the
 // shorter side of the touched area (measure_patch()), E the stiffness of unloading. At a sample
 // point whose cell has its undisturbed surface at `level` and had sunk by `old_sinkage` in earlier
-// contacts (cell_history.h), below a body at `height` now that was as low as `passed` on its path:
+// contacts (soil_grid.h), below a body at `height` now that was as low as `passed` on its path:
 //   deepest = max(0, level - passed)
-//   bearing = max(0, deepest - lift)        lift below a wheel: wheel_stress.h; else 0
+//   bearing = max(0, deepest - lift)        lift below a wheel: soil_laws.h; else 0
 //   virgin  = (k_c / b + k_phi) bearing^n   Bekker 1969
 //   stiff   = E (bearing - old_sinkage)     reloading along E; a mean over the small square that a
 //                                           point stands for, which reaches the floor of a rut bit

@@ -24,7 +24,7 @@
 //   force    = damped A (slope_x, slope_y, 1)
 //   traction = -strength A steep (m_along lengthwise + m_across sideways)
 //
-// What is pushed (passive_pressure.h). A surface that slides over the soil the way the body travels
+// What is pushed (soil_laws.h). A surface that slides over the soil the way the body travels
 // pushes with what faces that way; a wheel or belt that moves aside pushes with its side wall, as
 // far as the soil beside it has been sheared since the body came (`aside`, a field that lies still
 // on the ground). z is the depth of the surface below the undisturbed level; travelling ahead:

@@ -10,7 +10,7 @@
 
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/terrain/gaussian_filter.h"
+#include "host_sim/physics/terrain/low_pass.h"
 
 namespace screed {
 namespace {

@@ -13,9 +13,9 @@
 
 #include "host_sim/core/elementary.h"
 #include "host_sim/physics/kernels/triple.h"
-#include "host_sim/physics/terrain/shear_law.h"
 
 namespace screed {
+
 namespace {
 
 constexpr double kSpacing_m = 0.0025;  // at most, a quarter of the least usual K

@@ -1,3 +1,23 @@
+// The particles of a bed as plain data, for those who record or draw them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "host_sim/physics/terrain/footprint_contact.h"
+#include "host_sim/physics/terrain/height_field.h"
+
+namespace screed {
+
+/// Equal spheres; none on terrain that is not made of them.
+struct SphereSet {
+  double radius_m = 0.0;
+  std::vector<std::array<float, 3>> centers_m;  ///< x, y, z in the world
+};
+
 // What robots drive on, whatever it is made of: rigid ground (rigid_terrain.h), deformable soil,
 // beds of particles. Plant and vehicle know this contract alone.
 //
@@ -6,17 +26,6 @@
 //   of their points (a belt carries its bristles along) and compute these forces themselves.
 // - with its footprints (footprint_contact.h), in press(): one call a body and step, never one a
 //   point.
-#pragma once
-
-#include <cstdint>
-#include <limits>
-#include <span>
-
-#include "host_sim/physics/terrain/footprint_contact.h"
-#include "host_sim/physics/terrain/height_field.h"
-#include "host_sim/physics/terrain/sphere_set.h"
-
-namespace screed {
 
 /// What a body lays against a terrain in press().
 enum class FootprintShape : uint8_t {

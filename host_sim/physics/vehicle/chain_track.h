@@ -1,17 +1,8 @@
-// A track of links round the two wheels of a side: pins, links between them, shoes on the links.
-//
-// Every pin is a point mass with two degrees of freedom in the plane of its wheels (the guides on
-// the wheels hold it there: what pushes it sideways pushes the carrying body). Links are stiff
-// springs from pin to pin. Wheels bear the pins radially and hold them by their teeth; the ground
-// presses on the shoes. One linearly implicit step of the whole chain costs one elimination
-// (chain_solver.h), so neither the lightness of the pins (some 1:1000 against the robot) nor the
-// stiffness of links, teeth and soil limits the step. Forces on the carrying body, and torques on
-// the wheels' shafts, are what the pins felt.
-//
-// Method: Baraff and Witkin, Large steps in cloth simulation, SIGGRAPH 1998, in one dimension.
-// docs/studies/robot-models.md says what else was tried.
+// The linear system of a closed chain: every pin has two unknowns and is coupled with its two
+// neighbours.
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
@@ -19,12 +10,43 @@
 #include <vector>
 
 #include "host_sim/physics/terrain/terrain.h"
-#include "host_sim/physics/vehicle/chain_solver.h"
 #include "host_sim/physics/vehicle/running_gear.h"
-#include "host_sim/physics/vehicle/terrain_contact.h"
 #include "host_sim/physics/vehicle/vehicle_options.h"
 
 namespace screed {
+
+/// Solves A x = b, A symmetric and positive definite, in blocks of 2 x 2: block i of the diagonal
+/// is diagonal[i], the block in row i and column i + 1 is next[i]; the last one couples the last
+/// pin with the first. By elimination, in time proportional to the number of pins (three or more);
+/// allocates nothing.
+class ChainSolver {
+ public:
+  explicit ChainSolver(size_t pins);
+
+  std::vector<Eigen::Matrix2d> diagonal;
+  std::vector<Eigen::Matrix2d> next;
+  std::vector<Eigen::Vector2d> right;
+
+  /// Uses up diagonal and right. The result is valid until the next call.
+  const std::vector<Eigen::Vector2d>& solve();
+
+ private:
+  std::vector<Eigen::Matrix2d> to_last_;  // what is left of each row's coupling with the last pin
+  std::vector<Eigen::Vector2d> x_;
+};
+
+// A track of links round the two wheels of a side: pins, links between them, shoes on the links.
+//
+// Every pin is a point mass with two degrees of freedom in the plane of its wheels (the guides on
+// the wheels hold it there: what pushes it sideways pushes the carrying body). Links are stiff
+// springs from pin to pin. Wheels bear the pins radially and hold them by their teeth; the ground
+// presses on the shoes. One linearly implicit step of the whole chain costs one elimination
+// (chain_track.h), so neither the lightness of the pins (some 1:1000 against the robot) nor the
+// stiffness of links, teeth and soil limits the step. Forces on the carrying body, and torques on
+// the wheels' shafts, are what the pins felt.
+//
+// Method: Baraff and Witkin, Large steps in cloth simulation, SIGGRAPH 1998, in one dimension.
+// docs/studies/robot-models.md says what else was tried.
 
 /// Of the shoes, inwards from the pins: the solid that loose elements meet.
 inline constexpr double kChainShoeThickness_m = 0.008;

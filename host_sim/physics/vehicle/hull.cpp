@@ -7,8 +7,8 @@
 #include <optional>
 #include <variant>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
-#include "host_sim/core/gravity.h"
 
 namespace screed {
 namespace {

@@ -10,7 +10,6 @@
 #include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/vehicle/running_gear.h"
-#include "host_sim/physics/vehicle/terrain_contact.h"
 
 namespace screed {
 

@@ -3,8 +3,8 @@
 
 #include <mutex>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
-#include "host_sim/core/gravity.h"
 
 // ODE and the reader of URDF call these: defined in the program, they come before the C library's,
 // whose bits depend on the processor.

@@ -8,6 +8,7 @@
 #include "host_sim/core/elementary.h"
 
 namespace screed {
+
 namespace {
 
 constexpr double kSpacing_m = 0.0125;  // of contact points along a belt

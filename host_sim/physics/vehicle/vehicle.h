@@ -2,7 +2,7 @@
 // contact with the terrain.
 //
 // Its parts (vehicle_parts.h) as ODE bodies, their revolute joints, but for the wheels', as ODE
-// hinges. All forces of the terrain are our own (terrain.h, terrain_contact.h), those of the walls
+// hinges. All forces of the terrain are our own (terrain.h, running_gear.h), those of the walls
 // round it (wall_contact.h) and those of other robots (robot_contact.h).
 #pragma once
 

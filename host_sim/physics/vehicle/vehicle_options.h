@@ -2,7 +2,7 @@
 // vehicle.h, which brings ODE: worlds without it take these options too.
 #pragma once
 
-#include "host_sim/physics/vehicle/gear_motor.h"
+#include "host_sim/physics/vehicle/drive_train.h"
 
 namespace screed {
 

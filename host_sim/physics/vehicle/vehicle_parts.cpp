@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/gravity.h"
 
 namespace screed {
 namespace {

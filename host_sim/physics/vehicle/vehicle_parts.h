@@ -3,7 +3,7 @@
 // vehicle (vehicle.h) is made of them, and worlds without dynamics take their measures.
 //
 // Bodies that a fixed joint holds together are one. Wheels ride with the body that carries them and
-// turn on shafts (drive_shaft.h) under their running gear (running_gear.h).
+// turn on shafts (drive_train.h) under their running gear (running_gear.h).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,7 +14,7 @@
 #include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/vehicle/chain_track.h"
-#include "host_sim/physics/vehicle/drive_shaft.h"
+#include "host_sim/physics/vehicle/drive_train.h"
 #include "host_sim/physics/vehicle/hull.h"
 #include "host_sim/physics/vehicle/robot_contact.h"
 #include "host_sim/physics/vehicle/running_gear.h"

@@ -1,7 +1,7 @@
 // A robot's body against the vertical walls of a bed (BedEdge::kWalled), which have no top.
 //
 // Every point of the body, of its running gear too, that is beyond a wall meets the law of
-// terrain_contact.h: a spring and damper that never pull, elastic bristles with Coulomb's limit.
+// running_gear.h: a spring and damper that never pull, elastic bristles with Coulomb's limit.
 // Walls are as stiff as boards, and up to a whole side of a track touches them at a time: explicit
 // forces would need steps far below a millisecond. So all points of a body in a step are solved
 // together, as the forces of the step's end, with the velocities u' that they leave:

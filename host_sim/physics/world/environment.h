@@ -1,6 +1,4 @@
-// What robots are driven in, as the rest of the program sees it: the terrain, each robot's true
-// state and battery, advanced a step at a time. Behind it stands physics (plant.h), or a network
-// that has learned from physics (surrogate_plant.h).
+// The motion that a robot's sensors measure, without their errors.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,11 +9,22 @@
 
 #include "hal/sample.h"
 #include "host_sim/physics/terrain/terrain.h"
-#include "host_sim/physics/vehicle/battery.h"
+#include "host_sim/physics/vehicle/drive_train.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
-#include "host_sim/physics/world/imu_truth.h"
 
 namespace screed {
+
+/// True motion over the last tick.
+struct ImuTruth {
+  Eigen::Vector3d mean_rate_rad_per_s;  ///< body frame
+  Eigen::Vector3d mean_specific_force;  ///< body frame, m/s^2: acceleration minus gravity
+  Eigen::Matrix3d body_to_world;
+  double altitude_m;
+};
+
+// What robots are driven in, as the rest of the program sees it: the terrain, each robot's true
+// state and battery, advanced a step at a time. Behind it stands physics (plant.h), or a network
+// that has learned from physics (surrogate_plant.h).
 
 /// Mean output of a robot's drivers over the battery voltage, -1..1, left and right; positive
 /// drives forward.

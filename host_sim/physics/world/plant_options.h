@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "host_sim/physics/vehicle/battery.h"
+#include "host_sim/physics/vehicle/drive_train.h"
 #include "host_sim/physics/vehicle/vehicle_options.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
 #include "host_sim/physics/world/terrain_factory.h"

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/terrain/terrain_change.h"
 #include "host_sim/physics/terrain/terrain_statistics.h"
 #include "host_sim/render/picture/canvas.h"
 #include "host_sim/render/picture/map_frame.h"

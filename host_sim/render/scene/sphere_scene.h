@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/physics/terrain/sphere_set.h"
+#include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/render/scene/height_tint.h"
 #include "host_sim/render/scene/terrain_scene.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "host_sim/core/display_units.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/quantile.h"
+#include "host_sim/core/statistics.h"
 #include "host_sim/ground_station/telemetry/schema.h"
 #include "host_sim/render/chart/band_intervals.h"
 #include "host_sim/render/chart/path_map.h"

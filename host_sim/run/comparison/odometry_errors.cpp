@@ -12,7 +12,7 @@
 #include "firmware/math/units.h"
 #include "firmware/robot/robot.h"
 #include "host_sim/core/elementary.h"
-#include "host_sim/core/quantile.h"
+#include "host_sim/core/statistics.h"
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/session_reader.h"
 

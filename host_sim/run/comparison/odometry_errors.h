@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/core/intervals.h"
+#include "host_sim/core/statistics.h"
 #include "host_sim/core/task_progress.h"
 
 namespace screed {

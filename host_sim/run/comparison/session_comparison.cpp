@@ -117,22 +117,16 @@ HeightField surface_of(const SessionReader& session, const HeightMap& map) {
 void read_trace(const SessionReader& session, const Bed& bed, ComparedRun& run) {
   const std::uint64_t every = std::max<std::uint64_t>(1, session.info().tick_rate_hz / 10);
   const std::uint64_t count = session.frames();
-  std::vector<SimFrame> frames;
-  for (std::uint64_t first = 0; first < count; first += frames.size()) {
-    frames.resize(std::min(kBlockRows, count - first));
-    session.read(first, std::span(frames));
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      const SimFrame& frame = frames[i];
-      if (std::isfinite(frame.delta_x) && std::isfinite(frame.delta_y)) {
-        run.end.distance_m += portable::hypot(frame.delta_x, frame.delta_y);
-      }
-      if ((first + i) % every != 0 && first + i + 1 != count) continue;
-      run.trace.push_back({frame.time, frame.x, frame.y, frame.battery, frame.leveling_state,
-                           frame.beds_x, frame.beds_y});
-    }
-  }
-  if (frames.empty()) return;
-  const SimFrame& last = frames.back();
+  if (count == 0) return;
+  const SimFrame last =
+      for_each_frame(session, count, [&](std::uint64_t row, const SimFrame& frame) {
+        if (std::isfinite(frame.delta_x) && std::isfinite(frame.delta_y)) {
+          run.end.distance_m += portable::hypot(frame.delta_x, frame.delta_y);
+        }
+        if (row % every != 0 && row + 1 != count) return;
+        run.trace.push_back({frame.time, frame.x, frame.y, frame.battery, frame.leveling_state,
+                             frame.beds_x, frame.beds_y});
+      });
   const Travelled place = bed.travelled(last);
   run.end.time_s = last.time;
   run.end.x_m = place.x_m;

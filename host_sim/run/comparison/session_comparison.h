@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host_sim/physics/terrain/height_map.h"
-#include "host_sim/physics/terrain/terrain_change.h"
+#include "host_sim/physics/terrain/terrain_statistics.h"
 #include "host_sim/run/session/session_reader.h"
 
 namespace screed {

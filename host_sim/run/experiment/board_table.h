@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "firmware/parameters/board_constants.h"
-#include "host_sim/physics/vehicle/battery.h"
-#include "host_sim/physics/vehicle/gear_motor.h"
+#include "host_sim/physics/vehicle/drive_train.h"
 
 namespace screed {
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/ground_station/telemetry/schema.h"

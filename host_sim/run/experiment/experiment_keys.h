@@ -1,5 +1,5 @@
 // The keys of experiment files: one table for reading, writing back and the documentation, made
-// from the sections (sections/, key_list.h).
+// from the sections (ground_sections.h, vehicle_sections.h).
 #pragma once
 
 #include <charconv>

@@ -1,4 +1,6 @@
-// [soil] of an experiment file: the soil of the model scm, a named one and what differs from it.
+// The sections of an experiment file that say what the bed is: [soil], [relief], [map],
+// [particles], [physics], [trap], [raygrid]. Each lists its keys once; experiment_keys.cpp reads
+// and writes them.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +13,8 @@
 #include "host_sim/physics/terrain/relief.h"
 
 namespace screed {
+
+// [soil] of an experiment file: the soil of the model scm, a named one and what differs from it.
 
 struct SoilSection {
   std::string preset = "viper";

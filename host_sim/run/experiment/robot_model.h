@@ -6,7 +6,7 @@
 #include <string>
 
 #include "host_sim/physics/vehicle/assembly.h"
-#include "host_sim/physics/vehicle/battery.h"
+#include "host_sim/physics/vehicle/drive_train.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 

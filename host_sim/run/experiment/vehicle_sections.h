@@ -1,4 +1,6 @@
-// [experiment] of an experiment file: what runs, and for how long.
+// The sections of an experiment file that say what drives, and how: [experiment], [vehicle],
+// [battery], [drive], [sensors], [radio], [fixes], [metrics], [robots]. Each lists its keys once;
+// experiment_keys.cpp reads and writes them.
 #pragma once
 
 #include <algorithm>
@@ -14,6 +16,8 @@
 #include "host_sim/ground_station/station/command_key.h"
 
 namespace screed {
+
+// [experiment] of an experiment file: what runs, and for how long.
 
 inline constexpr uint32_t kMaxFrames = 8U * INT16_MAX;  // eight blocks of a parameter's range
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/core/display_units.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/render/picture/color_map.h"
 #include "host_sim/render/report/page_file.h"
 #include "host_sim/run/comparison/comparison_picture.h"

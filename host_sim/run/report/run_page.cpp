@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/content_hash.h"
-#include "host_sim/core/display_units.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
@@ -29,7 +29,7 @@
 namespace screed {
 namespace {
 
-constexpr std::uint64_t kBlockRows = 1024;
+constexpr std::uint64_t kReportedRows = 1024;
 constexpr std::uint64_t kMaxStops = 900;
 
 /// Rows at which the page can stop: evenly spaced, the first and the last among them.
@@ -222,27 +222,22 @@ Json add_robot(PageFile& page, const SessionReader& session, std::span<const std
   PageEvents events;
   double distance_m = 0.0;
   std::size_t next_stop = 0;
-  std::vector<SimFrame> frames;
-  for (std::uint64_t first = 0; first < session.frames(); first += frames.size()) {
-    report_progress(progress, "reading the run", first, session.frames());
-    frames.resize(std::min(kBlockRows, session.frames() - first));
-    session.read(first, std::span(frames));
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      const SimFrame& frame = frames[i];
-      const std::uint64_t row = first + i;
-      curves.add(frame);
-      track.add(row, frame);
-      events.add(frame);
-      if (std::isfinite(frame.delta_x) && std::isfinite(frame.delta_y)) {
-        distance_m += portable::hypot(frame.delta_x, frame.delta_y);
-      }
-      if (next_stop < stops.size() && stops[next_stop] == row) {
-        rows.add(frame);
-        ++next_stop;
-      }
+  const auto add = [&](std::uint64_t row, const SimFrame& frame) {
+    if (row % kReportedRows == 0) {
+      report_progress(progress, "reading the run", row, session.frames());
     }
-  }
-  const SimFrame& last = frames.back();
+    curves.add(frame);
+    track.add(row, frame);
+    events.add(frame);
+    if (std::isfinite(frame.delta_x) && std::isfinite(frame.delta_y)) {
+      distance_m += portable::hypot(frame.delta_x, frame.delta_y);
+    }
+    if (next_stop < stops.size() && stops[next_stop] == row) {
+      rows.add(frame);
+      ++next_stop;
+    }
+  };
+  const SimFrame last = for_each_frame(session, session.frames(), add);
   const auto figure = [](const char* name, const char* unit, double value) {
     return Json{{"name", name}, {"unit", unit}, {"value", value}};
   };

@@ -17,7 +17,7 @@
 #include "firmware/protocol/messages.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/ground_station/link/robot_log.h"
+#include "host_sim/ground_station/link/robot_history.h"
 #include "host_sim/ground_station/telemetry/track_slip.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/run_setup.h"

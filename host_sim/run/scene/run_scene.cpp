@@ -47,23 +47,16 @@ struct DrivenPath {
 };
 
 DrivenPath path_until(const SessionReader& session, std::uint64_t last) {
-  constexpr std::uint64_t kBlockRows = 1024;
   constexpr double kPathStep_m = 0.01;
   DrivenPath driven;
-  std::vector<SimFrame> frames;
   const double dt = 1.0 / session.info().tick_rate_hz;
-  for (std::uint64_t first = 0; first <= last; first += frames.size()) {
-    frames.resize(std::min(kBlockRows, last + 1 - first));
-    session.read(first, std::span(frames));
-    for (const SimFrame& frame : frames) {
-      driven.travel_m[0] += std::isfinite(frame.track_left) ? frame.track_left * dt : 0.0;
-      driven.travel_m[1] += std::isfinite(frame.track_right) ? frame.track_right * dt : 0.0;
-      const Eigen::Vector2d at(frame.x, frame.y);
-      if (driven.path.empty() || (at - driven.path.back()).norm() >= kPathStep_m)
-        driven.path.push_back(at);
-    }
-  }
-  driven.frame = frames.back();
+  driven.frame = for_each_frame(session, last + 1, [&](std::uint64_t, const SimFrame& frame) {
+    driven.travel_m[0] += std::isfinite(frame.track_left) ? frame.track_left * dt : 0.0;
+    driven.travel_m[1] += std::isfinite(frame.track_right) ? frame.track_right * dt : 0.0;
+    const Eigen::Vector2d at(frame.x, frame.y);
+    if (driven.path.empty() || (at - driven.path.back()).norm() >= kPathStep_m)
+      driven.path.push_back(at);
+  });
   driven.path.emplace_back(driven.frame.x, driven.frame.y);
   return driven;
 }

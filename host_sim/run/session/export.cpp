@@ -17,7 +17,6 @@
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
-#include "host_sim/core/partial_folder.h"
 #include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/render/picture/terrain_picture.h"
 #include "schema/values.h"

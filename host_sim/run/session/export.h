@@ -1,4 +1,4 @@
-// The frames of a session as a table that every program reads.
+// Tables and heights of a session for other programs.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,14 @@
 
 #include "host_sim/core/record.h"
 #include "host_sim/core/task_progress.h"
-#include "host_sim/leveling/leveling_point.h"
+#include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/render/picture/robot_shape.h"
 #include "host_sim/run/session/session_reader.h"
 
 namespace screed {
+
+// The frames of a session as a table that every program reads.
 
 /// The rows of a session from `first` on, `count` of them.
 struct FrameRange {

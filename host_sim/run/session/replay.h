@@ -16,7 +16,7 @@ struct ReplayResult {
   std::optional<std::uint64_t> first_difference_tick;  ///< counted from 0
   std::string
       first_difference;     ///< "duty_left: expected 12, got 15"; expected is what was recorded
-  std::string arithmetic;   ///< of the recorded world (arithmetic.h)
+  std::string arithmetic;   ///< of the recorded world (session_layout.h)
   std::string output_hash;  ///< hash of the replayed outputs, 32 hexadecimal digits
   bool complete =
       true;  ///< false when the recorded run was killed: only its saved part was replayed

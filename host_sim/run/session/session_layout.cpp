@@ -2,7 +2,7 @@
 
 #include <ode/ode.h>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/content_hash.h"
 
 namespace screed {

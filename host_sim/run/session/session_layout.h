@@ -1,4 +1,4 @@
-// What a session says about its run as a whole.
+// What a session file holds: the run as a whole, names and types of its tables, its hash.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,16 @@
 #include "host_sim/core/hdf5_handle.h"
 #include "host_sim/core/record.h"
 #include "host_sim/ground_station/station/command_key.h"
-#include "host_sim/leveling/leveling_point.h"
+#include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/physics/terrain/height_map.h"
 
 namespace screed {
 
+// What a session says about its run as a whole.
+
 struct SessionInfo {
   std::string program_version;  ///< not part of the content hash
-  std::string arithmetic;       ///< of the world (arithmetic.h); not part of it either
+  std::string arithmetic;       ///< of the world (session_layout.h); not part of it either
   std::string experiment_name;  ///< not part of the content hash
   /// the whole INI text that was in force, overrides applied; any size, no NUL byte
   std::string experiment_text;

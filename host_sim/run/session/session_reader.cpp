@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/hdf5_handle.h"
 #include "host_sim/core/record.h"

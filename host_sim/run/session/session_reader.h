@@ -2,6 +2,8 @@
 // file).
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -12,8 +14,8 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
-#include "host_sim/leveling/leveling_point.h"
-#include "host_sim/physics/terrain/sphere_set.h"
+#include "host_sim/leveling/leveling_meter.h"
+#include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/run/session/session_layout.h"
 
 namespace screed {
@@ -74,5 +76,18 @@ class SessionReader {
   class Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Calls `use(row, frame)` for the rows up to `end`, read in blocks; returns the last frame.
+template <typename Use>
+SimFrame for_each_frame(const SessionReader& session, std::uint64_t end, Use use) {
+  constexpr std::uint64_t kBlockRows = 1024;
+  std::vector<SimFrame> frames;
+  for (std::uint64_t first = 0; first < end; first += frames.size()) {
+    frames.resize(std::min(kBlockRows, end - first));
+    session.read(first, std::span(frames));
+    for (std::size_t i = 0; i < frames.size(); ++i) use(first + i, frames[i]);
+  }
+  return frames.empty() ? SimFrame() : frames.back();
+}
 
 }  // namespace screed

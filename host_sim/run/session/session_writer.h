@@ -10,9 +10,9 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
-#include "host_sim/leveling/leveling_point.h"
+#include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/physics/soil/soil_parameters.h"
-#include "host_sim/physics/terrain/sphere_set.h"
+#include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/run/session/session_layout.h"
 
 namespace screed {

@@ -1,5 +1,5 @@
-// Names of the supervisor's states, of the leveling algorithm's states and of the faults: those of
-// the schema (firmware/protocol/screed.dbc).
+// What becomes of a run: the names of its states, what it did to its terrain, when and why it ends,
+// how level the bed is on the way.
 #pragma once
 
 #include <atomic>
@@ -13,17 +13,17 @@
 
 #include "firmware/robot/supervisor.h"
 #include "host_sim/leveling/leveling_meter.h"
-#include "host_sim/leveling/leveling_point.h"
-#include "host_sim/leveling/robot_scale.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/terrain/terrain.h"
-#include "host_sim/physics/terrain/terrain_change.h"
 #include "host_sim/physics/terrain/terrain_statistics.h"
 #include "host_sim/physics/world/environment.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "schema/values.h"
 
 namespace screed {
+
+// Names of the supervisor's states, of the leveling algorithm's states and of the faults: those of
+// the schema (firmware/protocol/screed.dbc).
 
 /// How many states there are; they are numbered from 0.
 inline constexpr std::size_t kLevelingStates = message::kLevelingStateMax + 1U;

@@ -1,5 +1,4 @@
-// Finds what changed on a height field since it looked last, at the cost of the changes and not of
-// the bed.
+// What of a run goes into its session: heights, frames, maps.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +11,19 @@
 #include "firmware/robot/robot.h"
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
-#include "host_sim/leveling/leveling_point.h"
+#include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/height_field.h"
-#include "host_sim/physics/terrain/sphere_set.h"
+#include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/world/environment.h"
 #include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/run/session/session_layout.h"
 #include "host_sim/run/session/session_writer.h"
 
 namespace screed {
+
+// Finds what changed on a height field since it looked last, at the cost of the changes and not of
+// the bed.
 
 class HeightWatch {
  public:

@@ -1,4 +1,4 @@
-// Observes a run: is called at every tick and changes nothing.
+// A run, tick by tick: who observes it, its pace, its progress, its telemetry, and the loop.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/ground_station/telemetry/latest_telemetry.h"
-#include "host_sim/leveling/leveling_point.h"
+#include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/run/simulation/outcome.h"
 #include "host_sim/run/simulation/parity.h"
@@ -23,6 +23,8 @@
 #include "host_sim/run/world/world.h"
 
 namespace screed {
+
+// Observes a run: is called at every tick and changes nothing.
 
 class SimulationObserver {
  public:

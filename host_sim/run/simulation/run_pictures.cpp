@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "host_sim/core/display_units.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/render/chart/path_map.h"
@@ -122,17 +122,12 @@ constexpr double kDrawnSides = 20.0;  ///< of the bed: the longest path that is 
 
 void add_robot(const SessionReader& session, const std::optional<RobotShape>& shape,
                DrivenRun& run) {
-  constexpr std::uint64_t kBlockRows = 1024;
   std::vector<PathPoint> path;
-  std::vector<SimFrame> frames;
-  for (std::uint64_t first = 0; first < session.frames(); first += frames.size()) {
-    frames.resize(std::min(kBlockRows, session.frames() - first));
-    session.read(first, std::span(frames));
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      if ((first + i) % kPathTicks == 0) path.push_back(path_point(frames[i]));
-    }
-  }
-  add_robot(std::move(path), frames.empty() ? SimFrame() : frames.back(), shape, run);
+  const SimFrame last =
+      for_each_frame(session, session.frames(), [&](std::uint64_t row, const SimFrame& frame) {
+        if (row % kPathTicks == 0) path.push_back(path_point(frame));
+      });
+  add_robot(std::move(path), last, shape, run);
 }
 
 }  // namespace

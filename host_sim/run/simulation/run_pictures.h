@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host_sim/core/sim_frame.h"
-#include "host_sim/leveling/leveling_point.h"
+#include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/render/picture/robot_shape.h"
 #include "host_sim/render/picture/terrain_picture.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/telemetry/arming.h"

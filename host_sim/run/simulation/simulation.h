@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "host_sim/ground_station/station/ground_port.h"
+#include "host_sim/ground_station/station/ground_station.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/run_loop.h"

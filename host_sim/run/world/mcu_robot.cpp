@@ -10,10 +10,9 @@
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/devices/mcu/mcu.h"
-#include "host_sim/devices/sensors/calibration_motion.h"
+#include "host_sim/devices/sensors/imu_model.h"
 #include "host_sim/run/experiment/vehicle_sections.h"
 #include "host_sim/run/world/image_robot.h"
-#include "host_sim/run/world/placement.h"
 
 namespace screed::mcu {
 namespace {

@@ -1,5 +1,4 @@
-// What a world is made of beside its terrain and the robots' bodies: sensors, radio, ground
-// station, scripted events, and what each robot is driven by.
+// A world: robots with what drives and surrounds them, advanced together over one terrain.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,22 +13,22 @@
 #include "firmware/parameters/board_constants.h"
 #include "firmware/parameters/parameters.h"
 #include "firmware/robot/robot.h"
-#include "firmware/security/credentials.h"
+#include "firmware/security/command_mac.h"
 #include "hal/host/target.h"
 #include "hal/sample.h"
 #include "host_sim/devices/mcu/cycle_report.h"
 #include "host_sim/devices/radio/radio_link.h"
 #include "host_sim/devices/sensors/imu_model.h"
 #include "host_sim/ground_station/station/command_key.h"
-#include "host_sim/ground_station/station/ground_end.h"
-#include "host_sim/ground_station/station/ground_port.h"
 #include "host_sim/ground_station/station/ground_station.h"
-#include "host_sim/ground_station/station/position_fixes.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
 #include "host_sim/physics/world/environment.h"
 #include "host_sim/physics/world/plant_options.h"
 
 namespace screed {
+
+// What a world is made of beside its terrain and the robots' bodies: sensors, radio, ground
+// station, scripted events, and what each robot is driven by.
 
 /// What firmware starts with.
 struct RobotSettings {
@@ -62,16 +61,27 @@ struct RobotOptions {
 
 struct WorldOptions : PlantOptions {
   std::vector<RobotOptions> robots{1};  ///< as many as there are starts
-  uint64_t seed = 1;                    ///< each robot's is made of it (placement.h)
+  uint64_t seed = 1;                    ///< each robot's is made of it (seed_of_robot())
   ImuErrors imu;
   RadioOptions radio;
   bool ground_station_arms = true;
   PositionFixOptions fixes;
-  /// The IMU feels a person turning the robot over (calibration_motion.h) instead of its own
+  /// The IMU feels a person turning the robot over (imu_model.h) instead of its own
   /// motion.
   bool calibration_motion = false;
   double encoder_counts_per_turn = 1000.0 / 3.0;
 };
+
+// What tells the robots of a world apart. Number 0 is what the experiment says, so that a robot is
+// the same alone as in company.
+
+/// Of its sensors, radio and ground station.
+uint64_t seed_of_robot(uint64_t seed, size_t number);
+/// Its random walk is another one.
+Parameters parameters_of_robot(const Parameters& parameters, size_t number);
+/// The same key under another id: no robot takes a command for another one.
+CommandKey key_of_robot(const CommandKey& key, size_t number);
+Credentials credentials_of_robot(const Credentials& credentials, size_t number);
 
 // Somebody who sees every sample and every answer of the robots of a world, and may tamper with
 // both.

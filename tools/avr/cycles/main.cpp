@@ -12,7 +12,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/devices/mcu/board.h"
 #include "host_sim/devices/mcu/wiring.h"
-#include "host_sim/ground_station/station/command_signer.h"
+#include "host_sim/ground_station/station/command_key.h"
 #include "tools/command_line/program.h"
 
 namespace {

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "host_sim/core/errors.h"
-#include "tools/avr/order/image_calls.h"
 #include "tools/avr/order/order_search.h"
 #include "tools/command_line/program.h"
 

@@ -8,7 +8,6 @@
 #include "host_sim/core/errors.h"
 #include "tools/avr/stack/disassembly.h"
 #include "tools/avr/stack/image_size.h"
-#include "tools/avr/stack/indirect_calls.h"
 #include "tools/avr/stack/stack_analysis.h"
 #include "tools/command_line/program.h"
 

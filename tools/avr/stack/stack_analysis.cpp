@@ -10,7 +10,6 @@
 
 #include "host_sim/core/errors.h"
 #include "tools/avr/stack/constant_registers.h"
-#include "tools/avr/stack/frame_pointer.h"
 
 namespace screed::avr_stack {
 namespace {

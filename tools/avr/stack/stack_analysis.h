@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "tools/avr/stack/disassembly.h"
-#include "tools/avr/stack/indirect_calls.h"
+#include "tools/avr/stack/image_size.h"
 
 namespace screed::avr_stack {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/ground_station/telemetry/schema.h"

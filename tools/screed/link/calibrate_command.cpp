@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/ground_station/calibration/imu_collector.h"
+#include "host_sim/ground_station/calibration/imu_calibration.h"
 #include "host_sim/ground_station/link/calibration_page.h"
 #include "host_sim/ground_station/link/command_session.h"
 #include "host_sim/ground_station/link/robot_history.h"

@@ -6,10 +6,9 @@
 #include <memory>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/ground_station/telemetry/csv_tables.h"
-#include "host_sim/ground_station/telemetry/log_decoder.h"
 #include "host_sim/ground_station/telemetry/mcap_file.h"
-#include "host_sim/ground_station/telemetry/track_slip_table.h"
 #include "tools/screed/cli/command.h"
 
 namespace screed {

@@ -26,7 +26,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/finite_number.h"
 #include "host_sim/ground_station/link/command_session.h"
-#include "host_sim/ground_station/link/file_descriptor.h"
+#include "host_sim/ground_station/link/pseudo_terminal.h"
 #include "host_sim/ground_station/link/robot_history.h"
 #include "schema/class_values.h"
 #include "tools/screed/cli/command.h"

@@ -16,8 +16,8 @@
 #include <optional>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/ground_station/link/file_descriptor.h"
-#include "host_sim/ground_station/link/serial_ports.h"
+#include "host_sim/ground_station/link/pseudo_terminal.h"
+#include "host_sim/ground_station/link/serial_link.h"
 #include "host_sim/ground_station/station/key_file.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"

@@ -12,7 +12,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
-#include "host_sim/ground_station/link/robot_log.h"
+#include "host_sim/ground_station/link/robot_history.h"
 #include "host_sim/ground_station/telemetry/battery_charge.h"
 #include "host_sim/ground_station/telemetry/track_slip.h"
 #include "host_sim/run/experiment/board_table.h"

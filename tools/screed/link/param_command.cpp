@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"

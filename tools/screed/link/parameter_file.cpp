@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/ini_file.h"
 #include "host_sim/run/experiment/experiment.h"

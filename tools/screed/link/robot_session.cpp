@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iostream>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/telemetry/arming.h"
 #include "tools/screed/cli/interrupt.h"

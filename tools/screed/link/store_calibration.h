@@ -7,8 +7,8 @@
 #include <ostream>
 #include <string>
 
-#include "host_sim/ground_station/calibration/imu_collector.h"
-#include "host_sim/ground_station/link/answer_text.h"
+#include "host_sim/ground_station/calibration/imu_calibration.h"
+#include "host_sim/ground_station/link/command_session.h"
 
 namespace screed {
 

@@ -8,7 +8,6 @@
 #include "commands.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/made_folders.h"
 #include "host_sim/core/random.h"
 #include "nn/batch/batch_network.h"
 #include "nn/data/features.h"

@@ -10,9 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "host_sim/core/intervals.h"
 #include "host_sim/core/json.h"
-#include "host_sim/core/quantile.h"
+#include "host_sim/core/statistics.h"
 #include "nn/slip/escape_run.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/core/quantile.h"
+#include "host_sim/core/statistics.h"
 #include "nn/surrogate/ground_check.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"

@@ -3,9 +3,8 @@
 #include <iostream>
 #include <memory>
 
-#include "host_sim/core/intervals.h"
 #include "host_sim/core/json.h"
-#include "host_sim/core/quantile.h"
+#include "host_sim/core/statistics.h"
 #include "nn/slip/slip_campaign.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/nn/slip_options.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host_sim/core/display_units.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/render/chart/path_map.h"
 #include "host_sim/render/chart/stacked_chart.h"
 

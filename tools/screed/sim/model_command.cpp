@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/gravity.h"
 #include "host_sim/core/json.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/physics/vehicle/model_report.h"

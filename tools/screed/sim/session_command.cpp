@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "commands.h"
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
-#include "host_sim/core/made_folders.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/export.h"
 #include "host_sim/run/session/run_folder.h"

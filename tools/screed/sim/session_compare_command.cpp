@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "host_sim/core/display_units.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
 #include "host_sim/run/comparison/comparison_picture.h"

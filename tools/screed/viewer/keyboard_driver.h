@@ -10,7 +10,7 @@
 
 #include "host_sim/ground_station/link/link.h"
 #include "host_sim/ground_station/link/robot_pilot.h"
-#include "host_sim/ground_station/station/ground_port.h"
+#include "host_sim/ground_station/station/ground_station.h"
 #include "tools/screed/viewer/subtitle.h"
 
 namespace screed::viewer {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "host_sim/core/display_units.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/render/picture/map_frame.h"
 #include "host_sim/render/picture/state_color.h"
 #include "host_sim/run/simulation/outcome.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host_sim/core/display_units.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/physics/terrain/terrain_statistics.h"
 
 namespace screed::viewer {

@@ -8,7 +8,6 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/made_folders.h"
 #include "tools/screed/cli/number_option.h"
 
 namespace screed {

@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/terrain/terrain_change.h"
+#include "host_sim/physics/terrain/terrain_statistics.h"
 
 namespace screed::viewer {
 namespace {

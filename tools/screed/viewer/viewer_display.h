@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "hal/sample.h"
-#include "host_sim/core/made_folders.h"
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/core/task_progress.h"
-#include "host_sim/leveling/leveling_point.h"
+#include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/outcome.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "firmware/leveling/leveling.h"
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "tools/schema/dbc.h"
 
 namespace screed {

@@ -12,7 +12,7 @@
 
 #include "firmware/math/crc16.h"
 #include "firmware/parameters/parameter_store.h"
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "tests/unit/test_robot.h"
 
 namespace screed {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "host_sim/core/paired_statistics.h"
+#include "host_sim/core/statistics.h"
 
 namespace screed {
 namespace {

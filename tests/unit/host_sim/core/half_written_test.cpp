@@ -19,7 +19,6 @@
 #include "host_sim/grid/grid_sweep_worker.h"
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/ground_station/telemetry/csv_tables.h"
-#include "host_sim/ground_station/telemetry/log_decoder.h"
 #include "host_sim/ground_station/telemetry/mcap_file.h"
 #include "host_sim/render/chart/svg_png.h"
 #include "tests/child_process.h"

@@ -100,7 +100,7 @@ TEST(SoilWheelLimitTest, ALockedWheelIsHeldByFrictionAndByWhatItPushes) {
   EXPECT_NEAR(dragged.drawbar_pull_n, -3.0 * friction, 0.01);
   soil.density_kg_per_m3 = 1500.0;
   const WheelReaction pushing = wheel_limit(wheel, soil, NormalStress::kVertical);
-  // 12 times half the weight of a column as deep as the wheel's sinkage: passive_pressure.h at 30
+  // 12 times half the weight of a column as deep as the wheel's sinkage: soil_laws.h at 30
   // degrees.
   const double h = pushing.sinkage_m;
   EXPECT_NEAR(pushing.drawbar_pull_n - dragged.drawbar_pull_n,

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "host_sim/core/gravity.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/random.h"
 
 namespace screed {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "hal/sample.h"
-#include "host_sim/core/gravity.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 
 namespace screed {

@@ -4,13 +4,10 @@
 #include <string>
 
 #include "host_sim/core/errors.h"
+#include "tools/schema/code.h"
 #include "tools/schema/dbc.h"
 #include "tools/schema/documentation.h"
-#include "tools/schema/host_tables.h"
-#include "tools/schema/message_code.h"
 #include "tools/schema/schema_check.h"
-#include "tools/schema/value_code.h"
-#include "tools/schema/wireshark_tables.h"
 
 namespace screed::schema {
 namespace {

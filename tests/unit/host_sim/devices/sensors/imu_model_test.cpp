@@ -110,7 +110,7 @@ TEST(ImuModel, ChipsDeliverAtTheirOwnRates) {
     }
     last = sample;
   }
-  EXPECT_EQ(mags, 100) << "as hal/avr/imu_registers.h sets the chip";
+  EXPECT_EQ(mags, 100) << "as hal/avr/imu.cpp sets the chip";
   EXPECT_EQ(baros, 25);
 }
 

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "host_sim/ground_station/link/dashboard_rows.h"
 #include "tests/unit/host_sim/ground_station/said_frames.h"
 
 namespace screed {

@@ -18,7 +18,7 @@
 #include "host_sim/ground_station/link/external_port.h"
 #include "host_sim/ground_station/link/pseudo_terminal.h"
 #include "host_sim/ground_station/link/serial_link.h"
-#include "host_sim/ground_station/station/ground_end.h"
+#include "host_sim/ground_station/station/ground_station.h"
 #include "tests/temp_folder.h"
 
 namespace screed {

@@ -12,12 +12,11 @@
 #include <vector>
 
 #include "host_sim/core/random.h"
-#include "host_sim/physics/soil/cell_history.h"
-#include "host_sim/physics/soil/power_table.h"
 #include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/soil/soil_grid.h"
+#include "host_sim/physics/soil/soil_laws.h"
 #include "host_sim/physics/terrain/footprint.h"
 #include "host_sim/physics/terrain/shear_field.h"
-#include "host_sim/physics/terrain/shear_law.h"
 
 namespace screed {
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "host_sim/core/gravity.h"
+#include "host_sim/core/constants.h"
 
 namespace screed {
 namespace {

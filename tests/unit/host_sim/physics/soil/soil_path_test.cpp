@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host_sim/physics/soil/footprint_path.h"
+#include "host_sim/physics/soil/sinking.h"
 #include "host_sim/physics/soil/soil_bed.h"
 
 namespace screed {

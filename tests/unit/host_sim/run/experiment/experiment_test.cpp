@@ -11,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "tests/temp_folder.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "tests/unit/host_sim/run/session/session_fixture.h"
 
 namespace screed {

@@ -1,19 +1,147 @@
-// The order of things in a tick.
-#include "host_sim/run/simulation/run_loop.h"
+// Pacing by a clock that only moves when told to.
 
 #include <gtest/gtest.h>
-
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/run/session/session_reader.h"
+#include "host_sim/run/simulation/run_loop.h"
 #include "tests/temp_folder.h"
 #include "tests/unit/host_sim/run/rover5_plant.h"
 #include "tests/unit/test_robot.h"
 
 namespace screed {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+class FakeClock : public WallClock {
+ public:
+  Time now() const override { return time; }
+  void sleep_until(Time until) override {
+    slept_to.push_back(until);
+    time = std::max(time, until);
+  }
+
+  Time time{1000s};
+  std::vector<Time> slept_to;
+};
+
+TEST(Pacer, SleepsUntilTheClockHasCaughtUp) {
+  FakeClock clock;
+  Pacer pacer(clock, true);
+  pacer.wait_until(0.01);
+  pacer.wait_until(0.02);
+  ASSERT_EQ(clock.slept_to.size(), 2U);
+  EXPECT_EQ(clock.slept_to[0] - FakeClock::Time(1000s), 10ms);
+  EXPECT_EQ(clock.slept_to[1] - FakeClock::Time(1000s), 20ms);
+  EXPECT_DOUBLE_EQ(pacer.elapsed_s(), 0.02);
+}
+
+TEST(Pacer, ALateRunIsNotPacedByItsDelay) {
+  FakeClock clock;
+  Pacer pacer(clock, true);
+  clock.time += 3s;
+  pacer.wait_until(1.0);
+  EXPECT_DOUBLE_EQ(pacer.elapsed_s(), 3.0);
+  pacer.wait_until(3.5);
+  EXPECT_DOUBLE_EQ(pacer.elapsed_s(), 3.5);
+}
+
+TEST(Pacer, NeverSleepsWithoutRealtime) {
+  FakeClock clock;
+  Pacer pacer(clock, false);
+  pacer.wait_until(5.0);
+  EXPECT_TRUE(clock.slept_to.empty());
+  clock.time += 250ms;
+  EXPECT_DOUBLE_EQ(pacer.elapsed_s(), 0.25);
+}
+
+}  // namespace
+
+// How often a run tells how far it has come.
+
+namespace {
+
+LevelingPoint off_level_by(double metres) {
+  LevelingPoint point;
+  point.level_deviation = metres;
+  return point;
+}
+
+TEST(Progress, TellsTenTimesASecondAndAtTheEnd) {
+  Experiment experiment;
+  experiment.experiment.duration_s = 0.25;
+  StopCondition stop(experiment, nullptr);
+  std::vector<SimulationProgress> told;
+  Progress progress([&](const SimulationProgress& one) { told.push_back(one); });
+  progress.on_leveling(off_level_by(0.02));
+  for (int tick = 1; tick <= 25; ++tick) {
+    if (tick == 15) progress.on_leveling(off_level_by(0.01));
+    stop.count_tick(RobotState::kRunning, message::LevelingState::kWalk);
+    progress.on_tick(stop, tick * 0.01);
+  }
+  ASSERT_EQ(told.size(), 3U);
+  EXPECT_DOUBLE_EQ(told[0].time_s, 0.1);
+  EXPECT_DOUBLE_EQ(told[1].time_s, 0.2);
+  EXPECT_DOUBLE_EQ(told[2].time_s, 0.25);
+  EXPECT_DOUBLE_EQ(told[2].duration_s, 0.25);
+  EXPECT_EQ(told[0].level_deviation_m, 0.02);
+  EXPECT_EQ(told[2].level_deviation_m, 0.01);
+  for (const SimulationProgress& one : told) EXPECT_EQ(one.level_deviation_before_m, 0.02);
+}
+
+}  // namespace
+
+// What a robot sent, in frames and as a share of its line.
+
+namespace {
+
+RobotOutput sending(std::string_view bytes) {
+  RobotOutput output{};
+  std::copy(bytes.begin(), bytes.end(), output.radio_out);
+  output.radio_out_count = static_cast<uint8_t>(bytes.size());
+  return output;
+}
+
+TEST(TelemetryMeter, CountsWholeLinesAndAllBytes) {
+  TelemetryMeter meter;
+  meter.add(0, sending("t1001FF\rt1011"));
+  meter.add(0, sending("00\r"));
+  meter.add(0, sending(""));
+  EXPECT_EQ(meter.frames(), 2U);
+  EXPECT_DOUBLE_EQ(meter.line_share(1.0), 16.0 / 5760.0);
+  EXPECT_DOUBLE_EQ(meter.line_share(0.01), 16.0 / 57.6);
+}
+
+TEST(TelemetryMeter, KeepsTheLastFrameOfEachMessage) {
+  TelemetryMeter meter;
+  // POWER of robot 1, cut in two: 7200 mV, then 5000 mV.
+  meter.add(10'000, sending("t31450000201C"));
+  EXPECT_FALSE(meter.latest().value("power.battery").has_value());
+  meter.add(20'000, sending("07\r"));
+  EXPECT_EQ(meter.latest().value("power.battery"), 7200.0);
+  meter.add(30'000, sending("t31450000881307\r"));
+  EXPECT_EQ(meter.latest().value("power.battery"), 5000.0);
+  EXPECT_EQ(meter.latest().age_s(*find_message("POWER"), 1'030'000), 1.0);
+}
+
+TEST(TelemetryMeter, BytesBehindTheValidOnesAreNotSent) {
+  RobotOutput output = sending("t1000\rt1000\r");
+  output.radio_out_count = 6;
+  TelemetryMeter meter;
+  meter.add(0, output);
+  EXPECT_EQ(meter.frames(), 1U);
+}
+
+}  // namespace
+
+// The order of things in a tick.
+
 namespace {
 
 class Observer : public SimulationObserver {
@@ -120,4 +248,5 @@ TEST_F(RunLoopTest, AnImageEndsWithTheWorldsClock) {
 }
 
 }  // namespace
+
 }  // namespace screed

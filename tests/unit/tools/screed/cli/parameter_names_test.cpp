@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/errors.h"
 
 namespace screed {

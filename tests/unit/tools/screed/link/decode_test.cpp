@@ -13,7 +13,7 @@
 #include "firmware/protocol/messages.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
-#include "host_sim/ground_station/telemetry/log_decoder.h"
+#include "host_sim/ground_station/telemetry/candump_log.h"
 #include "tests/temp_folder.h"
 #include "tools/screed/link/decode_command.h"
 #include "tools/screed/link/plot_command.h"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "schema/class_values.h"
