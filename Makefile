@@ -1,7 +1,7 @@
 # Screed: every entry point. `make help` prints them from the rules: a target with a comment behind two hashes is one.
 #
-# The first make installs missing packages (DEPS=no switches that off) and calls a second one, which does the work: its rules may
-# use what has just been installed. Everything is built under build/, results go to out/.
+# The first make installs missing packages (DEPS=no switches that off) and calls a second one, which does the work: its
+# rules may use what has just been installed. Everything is built under build/, results go to out/.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -o pipefail -ec
@@ -31,7 +31,7 @@ clean:  ## remove build/ (results in out/ stay)
 	rm -rf build
 
 ifndef INSTALLED
-# ---- the first make ----------------------------------------------------------------------------------------------------------
+# ---- the first make --------------------------------------------------------------------------------------------------
 # `lint` goes on after a finding, to show all of them.
 WORK := $(filter-out help deps clean,$(MAKECMDGOALS))
 .PHONY: work $(WORK)
@@ -40,7 +40,7 @@ $(WORK): work
 work: deps
 	+@$(MAKE) --no-print-directory $(if $(filter 0,$(MAKELEVEL)),$(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc))) $(if $(filter lint,$(WORK)),-k) INSTALLED=yes $(WORK)
 else
-# ---- the second make: the rules of each part -----------------------------------------------------------------------------------
+# ---- the second make: the rules of each part -------------------------------------------------------------------------
 include tools/build/options.mk
 include tools/schema/schema.mk
 include tools/build/host.mk

@@ -1,6 +1,7 @@
 # Tests under the address and undefined-behaviour sanitizers. Included by the top Makefile.
 #
-# `make test-asan` runs the tests below: those whose code indexes memory with what comes from outside. Small enough for CI.
+# `make test-asan` runs the tests below: those whose code indexes memory with what comes from outside. Small enough for
+# CI.
 # `make test BUILD=asan` runs every test. Needs host.mk, tests/tests.mk and tests/mcu/mcu_tests.mk.
 
 .PHONY: test-asan asan-tests
@@ -9,7 +10,8 @@ test-asan:  ## the tests of what reads foreign bytes, files and images, under th
 
 ifeq ($(BUILD),asan)
 
-# clang instruments in two thirds of gcc's time, and with more checks. Warnings are for the release build, which gcc and clang-tidy see.
+# clang instruments in two thirds of gcc's time, and with more checks. Warnings are for the release build, which gcc and
+# clang-tidy see.
 CXX := clang++
 WARNINGS := -w
 
@@ -33,7 +35,8 @@ ifneq ($(ASAN_MISSING),)
 $(error tests/asan.mk: no such test: $(ASAN_MISSING))
 endif
 
-# The library without what none of these tests links: training, the surrogate, fits, campaigns, most subcommands, windows.
+# The library without what none of these tests links: training, the surrogate, fits, campaigns, most subcommands,
+# windows.
 ASAN_COMMANDS := $(addprefix tools/screed/,link/attitude_command.cpp link/decode_command.cpp link/key_command.cpp link/plot_command.cpp \
   link/plot_signals.cpp sim/replay_command.cpp cli/interrupt.cpp cli/number_option.cpp cli/number_text.cpp cli/progress_bar.cpp cli/task_bar.cpp)
 ASAN_LEFT_OUT := $(addprefix nn/,training/% terrain/% surrogate/% slip/% data/%) \
@@ -45,10 +48,12 @@ $(eval $(call in_groups,ASAN_HOT,$(filter $(HOT_SOURCES),$(ASAN_LIBRARY_SOURCES)
 $(eval $(call in_groups,ASAN_COLD,$(filter $(COLD_SOURCES),$(ASAN_LIBRARY_SOURCES)),cold,,$(COLD_SOURCES)))
 # Tools that these tests link beside the library: with the same compiled headers.
 $(eval $(call with_headers,cold,$(call sources,tools/avr tools/schema tools/bench/telemetry)))
-# Compiling takes longer than the tests: of what computes, what stands alone is optimised (soil, kernels, particles), groups are not.
+# Compiling takes longer than the tests: of what computes, what stands alone is optimised (soil, kernels, particles),
+# groups are not.
 $(ASAN_HOT_GROUP_OBJECTS): HEADER_SET = cold
 $(ASAN_HOT_GROUP_OBJECTS): $(if $(filter yes,$(HEADERS)),$(B)/headers/cold.h.gch)
-# Of an inline function that several have compiled the linker takes the first it meets: those that are optimised stand first.
+# Of an inline function that several have compiled the linker takes the first it meets: those that are optimised stand
+# first.
 ASAN_OPTIMISED := $(call objects,$(CORE_SOURCES) $(ASAN_HOT_ALONE)) $(ASAN_HOT_GROUP_OBJECTS)
 $(B)/libasan_cold.a: $(ASAN_COLD_OBJECTS)
 	@rm -f $@
@@ -64,8 +69,8 @@ ASAN_TESTS := $(B)/tests/asan_unit_tests $(if $(filter yes,$(MCU)),$(B)/tests/as
 $(ASAN_TESTS):
 	$(call link,$(TEST_LIBRARIES))
 
-# Figures of whole runs and of thousands of points, half of the time of all: they go through the code that the others of their files go
-# through.
+# Figures of whole runs and of thousands of points, half of the time of all: they go through the code that the others of
+# their files go through.
 ASAN_LONG := GridFigures.*:SoilDigTest.MovesAsMuchAsAmongParticles:SoilDigTest.ALongSpinFindsGroundThatIsDense
 ASAN_LONG := $(ASAN_LONG):SoilDigTest.ASpinOnASlopeCarriesMaterialDownhill:SoilDigTest.SlipCarriesAsFarAsAmongParticles
 ASAN_LONG := $(ASAN_LONG):Footprint.ReachHoldsTheBody:Footprint.ReachBelow*:Footprint.LowestAtRim*

@@ -2,13 +2,14 @@
 # run.sh PROGRAM...: runs the tests of GoogleTest programs, as many at a time as there are processors, and ends with
 # "N passed, N failed".
 #
-# One queue holds the tests of all programs, the longest first: those of half a second and more alone, the others in batches of about a
-# second, since a program takes longer to start than most tests to run. How long tests take is known from earlier runs of the same
-# programs, if there were any. A program that dies counts as a failed test; its output is shown. With CI=true a skipped test counts as
-# failed.
+# One queue holds the tests of all programs, the longest first: those of half a second and more alone, the others in
+# batches of about a second, since a program takes longer to start than most tests to run. How long tests take is known
+# from earlier runs of the same programs, if there were any. A program that dies counts as a failed test; its output is
+# shown. With CI=true a skipped test counts as failed.
 set -uo pipefail
 
-# run_tests PROGRAM NAME:NAME...: prints a line a test to descriptor 3, "passed|failed|skipped MILLISECONDS PROGRAM NAME".
+# run_tests PROGRAM NAME:NAME...: prints a line a test to descriptor 3, "passed|failed|skipped MILLISECONDS PROGRAM
+# NAME".
 run_tests() {
   local program=$1 names=$2 status=0 lines
   "$program" --gtest_brief=1 --gtest_filter="$names" --gtest_output="xml:$mine.xml" > "$mine.log" 2>&1 || status=$?

@@ -1,8 +1,9 @@
-# Unit tests, software-in-the-loop tests, tests of the microcontroller's images, and the long ones of all these. Included by the top
-# Makefile after the parts whose tests it runs; parts with tests of their own add to TESTS and TEST_IMAGES, or to what `test` needs.
+# Unit tests, software-in-the-loop tests, tests of the microcontroller's images, and the long ones of all these.
+# Included by the top Makefile after the parts whose tests it runs; parts with tests of their own add to TESTS and
+# TEST_IMAGES, or to what `test` needs.
 #
-# tests/unit mirrors the folders of the sources. A test of more than two seconds lies in tests/long, whose program `make test` neither
-# compiles nor links.
+# tests/unit mirrors the folders of the sources. A test of more than two seconds lies in tests/long, whose program `make
+# test` neither compiles nor links.
 
 UNIT_SOURCES := $(call sources,tests/unit)
 SITL_SOURCES := $(call sources,tests/sitl)
@@ -12,7 +13,7 @@ LAB_LIBRARY_SOURCES := $(filter-out tools/bench/telemetry/main.cpp,$(call source
 TESTS := $(B)/tests/unit_tests $(B)/tests/sitl_tests
 LONG_TESTS := $(B)/tests/long_tests
 
-# ---- programs ----------------------------------------------------------------------------------------------------------------
+# ---- programs --------------------------------------------------------------------------------------------------------
 
 $(eval $(call in_groups,UNIT,$(UNIT_SOURCES),test))
 $(eval $(call in_groups,SITL,$(SITL_SOURCES),test))
@@ -22,8 +23,8 @@ include tests/mcu/mcu_tests.mk
 endif
 
 TEST_LIBRARIES = $$(pkg-config --libs $(TEST_PACKAGES))
-# The library stands first, and whole: tests are compiled without optimising, and of an inline function that both have compiled the linker
-# takes the first it meets.
+# The library stands first, and whole: tests are compiled without optimising, and of an inline function that both have
+# compiled the linker takes the first it meets.
 define link_tests
 	@echo "  LINK $@"
 	@$(CXX) -Wl,--whole-archive $(LIBRARY) -Wl,--no-whole-archive $(filter-out $(LIBRARY),$(filter %.o %.a,$^)) -Wl,--as-needed \
@@ -50,7 +51,8 @@ test: $(SCREED) $$(TESTS) $$(TEST_IMAGES)  ## build and run the tests that take 
 test-long: $(SCREED) $(LONG_TESTS) $$(TEST_IMAGES)  ## build and run those that take longer: long drives, whole runs, minutes of the microcontroller
 	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/run.sh $(LONG_TESTS)
 
-# The tests of single sources: quick to build, for whoever works on them. Which ones, no date of a file says: linked each time.
+# The tests of single sources: quick to build, for whoever works on them. Which ones, no date of a file says: linked
+# each time.
 .PHONY: test-file test-tutorial
 test-file: $(SCREED) $(B)/tests/test_file  ## build and run single tests (TEST='tests/unit/firmware/leveling/*_test.cpp')
 	@SCREED_PROGRAM=$(abspath $(SCREED)) $(B)/tests/test_file $(ARGS)

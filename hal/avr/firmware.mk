@@ -17,8 +17,8 @@ AVR_OBJDUMP ?= avr-objdump
 AVR_SIZE ?= avr-size
 AVR_NM ?= avr-nm
 
-# Most flash and RAM a program may use, and what of it must stay free; RAM counts variables and the worst-case stack. With LEVELING half of
-# that of flash, with USB=core none.
+# Most flash and RAM a program may use, and what of it must stay free; RAM counts variables and the worst-case stack.
+# With LEVELING half of that of flash, with USB=core none.
 FLASH_BUDGET := 28672
 RAM_BUDGET := 2560
 RAM_SPARE := 256
@@ -42,9 +42,10 @@ FIRMWARE_SOURCES := $(filter-out hal/avr/usb/% hal/avr/arduino/%,$(call sources,
 FIRMWARE_STARTUP := $(FIRMWARE_BUILD)/hal/avr/startup.o
 FIRMWARE_OBJECTS := $(FIRMWARE_STARTUP) $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o)
 
-# No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax, -mstrict-X and -mcall-prologues make the code smaller.
-# -fno-toplevel-reorder: functions lie in the order of the sources, so callers lie near what they call (a call within 4 kB is 2 bytes
-# shorter).
+# No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax, -mstrict-X and -mcall-prologues
+# make the code smaller.
+# -fno-toplevel-reorder: functions lie in the order of the sources, so callers lie near what they call (a call within 4
+# kB is 2 bytes shorter).
 # Optimisations of gcc-avr 5.4 that make the image larger (docs/firmware-budget.md). The Arduino library names them too.
 SMALLER := no-gcse no-move-loop-invariants no-tree-loop-im no-tree-dominator-opts no-tree-tail-merge no-tree-ter no-ipa-cp no-ipa-sra
 # -g: `make size` names the sources; nothing of it is flashed.
@@ -59,7 +60,8 @@ endif
 ifdef NODE
 AVR_FLAGS += -DSCREED_NODE=$(NODE)
 endif
-# make firmware LEVELING=NAME: the image whose default algorithm is that one; it has no other but `drive`, unless LEAVE_OUT says so.
+# make firmware LEVELING=NAME: the image whose default algorithm is that one; it has no other but `drive`, unless
+# LEAVE_OUT says so.
 ALGORITHM_NUMBERS := $(shell sed -nE 's/^VAL_ [0-9]+ algorithm //p' $(SCHEMA) | sed -E 's/([0-9]+) "(\w+)"/\2=\1/g; s/;//')
 ifdef LEVELING
 ALGORITHMS := $(foreach it,$(ALGORITHM_NUMBERS),$(firstword $(subst =, ,$(it))))
@@ -69,7 +71,8 @@ endif
 AVR_FLAGS += -DSCREED_DEFAULT_ALGORITHM=$(patsubst $(LEVELING)=%,%,$(filter $(LEVELING)=%,$(ALGORITHM_NUMBERS)))
 LEAVE_OUT ?= $(filter-out drive $(LEVELING),$(ALGORITHMS))
 endif
-# make firmware LEAVE_OUT="NAME...": the image without these leveling algorithms; unset: as firmware/parameters/algorithms_in_build.h says.
+# make firmware LEAVE_OUT="NAME...": the image without these leveling algorithms; unset: as
+# firmware/parameters/algorithms_in_build.h says.
 ifneq ($(origin LEAVE_OUT),undefined)
 AVR_FLAGS += -DSCREED_LEAVE_OUT='"$(LEAVE_OUT)"'
 endif
@@ -78,14 +81,14 @@ AVR_INCLUDES := -I. -Iboards/$(BOARD) -I$(FIRMWARE_BUILD)/generated -I$(BUILD_RO
 # Start-up code of our own (hal/avr/startup.S), vectors up to that of the TWI.
 LAST_VECTOR := 36
 AVR_LINK := -Wl,--gc-sections -nostartfiles
-# The order of the functions in the image: near what they call. The linker's own script with the list of their sections before the others;
-# a function that is not on it comes behind them. `make function-order` makes it anew.
+# The order of the functions in the image: near what they call. The linker's own script with the list of their sections
+# before the others; a function that is not on it comes behind them. `make function-order` makes it anew.
 FUNCTION_ORDER := hal/avr/function_order.txt
 LINKER_SCRIPT := $(FIRMWARE_BUILD)/screed.ld
 AVR_EMULATION := avr5
 
-# The Arduino core of Debian's package arduino-core-avr, with USB=core: main(), USB and the serial line over it. Only what is used
-# of it reaches the image.
+# The Arduino core of Debian's package arduino-core-avr, with USB=core: main(), USB and the serial line over it. Only
+# what is used of it reaches the image.
 ARDUINO_ROOT ?= /usr/share/arduino/hardware/arduino/avr
 ARDUINO_CORE := $(ARDUINO_ROOT)/cores/arduino
 ARDUINO_VARIANT := $(ARDUINO_ROOT)/variants/leonardo
@@ -98,8 +101,8 @@ ARDUINO_FLAGS := -DARDUINO=10819 -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR \
 .PHONY: firmware size firmware-budget firmware-algorithms function-order
 firmware: $(FIRMWARE_BUILD)/screed.hex firmware-budget firmware-algorithms  ## build the image for the robot (BOARD=NAME, a folder in boards/)
 
-# What the analysis cannot see with USB=core: targets of indirect calls. Its "never" lines hold as long as the core's serial line is
-# the only object with virtual functions. The image without the core has neither.
+# What the analysis cannot see with USB=core: targets of indirect calls. Its "never" lines hold as long as the core's
+# serial line is the only object with virtual functions. The image without the core has neither.
 INDIRECT_CALLS := hal/avr/arduino/indirect_calls.txt
 ALLOWED_VTABLES_core := Serial_
 STACK_OPTIONS_core := --indirect-calls $(INDIRECT_CALLS) --free-word $(BOOT_KEY_ADDRESS)

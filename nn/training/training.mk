@@ -1,4 +1,5 @@
-# Recording of training data, and training on it. `make surrogate`: the thesis' training sessions, networks V1 and V2 trained on them, evaluated, quantised, exported. Results in out/.
+# Recording of training data, and training on it. `make surrogate`: the thesis' training sessions, networks V1 and V2
+# trained on them, evaluated, quantised, exported. Results in out/.
 #
 #   make surrogate FRAMES=4000 ARGS='--epochs 2'    a short run of everything
 #   make surrogate MODELS=v1                        one of nn/configurations
@@ -25,14 +26,14 @@ surrogate: $(SCREED)  ## train, evaluate and export the networks of the thesis (
 	@{ cat nn/training/results_head.txt ; for model in $(MODELS) ; do cat $(OUT)/nn/$$model/evaluation.md ; echo ; done ; } > $(OUT)/nn/results.md
 	@echo "tables in $(OUT)/nn/results.md"
 
-# ---- the thesis' sessions alone ------------------------------------------------------------------------------------------------
+# ---- the thesis' sessions alone --------------------------------------------------------------------------------------
 
 SESSIONS ?= $(wildcard host_sim/data/experiments/sessions/*.ini)
 .PHONY: sessions
 sessions: $(SCREED)  ## record the thesis' training sessions into out/sessions (SESSIONS='FILE...' ARGS='--frames 800')
 	@$(SCREED) record $(SESSIONS) --out $(OUT)/sessions $(ARGS)
 
-# ---- the stand-in beside recorded drives ----------------------------------------------------------------------------------------
+# ---- the stand-in beside recorded drives -----------------------------------------------------------------------------
 
 STANDIN := host_sim/data/experiments/sessions/standin/standin
 STANDIN_OUT := $(OUT)/sessions/standin$(if $(FRAMES),-$(FRAMES))

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Real SocketCAN: Debian's kernel under QEMU, since the build machine's kernel need not have CAN. tests/can/guest.sh runs inside as the
-# first process. The guest's verdict is QEMU's exit code: only a pass writes the pass value to the debug exit port (a kernel that
-# panics makes QEMU end with 0).
+# Real SocketCAN: Debian's kernel under QEMU, since the build machine's kernel need not have CAN. tests/can/guest.sh
+# runs inside as the first process. The guest's verdict is QEMU's exit code: only a pass writes the pass value to the
+# debug exit port (a kernel that panics makes QEMU end with 0).
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

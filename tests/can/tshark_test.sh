@@ -1,6 +1,6 @@
 #!/bin/bash
-# tshark, with the tables that the schema compiler makes for it, reads every signal of a log as `screed decode` does: random messages of
-# three robots and of the ground, edges among them.
+# tshark, with the tables that the schema compiler makes for it, reads every signal of a log as `screed decode` does:
+# random messages of three robots and of the ground, edges among them.
 set -euo pipefail
 
 cd "$(dirname "$0")/../.."

@@ -1,7 +1,8 @@
 #!/bin/bash
-# tutorial.sh PAGE: runs the blocks ```sh of a Markdown page, from top to bottom, in one shell and in a copy of the tree, as a reader would.
-# What is built already is copied along, so only what the page changes is compiled. Ends with 1 at the first command that fails, with its
-# line in the page.
+# tutorial.sh PAGE: runs the blocks ```sh of a Markdown page, from top to bottom, in one shell and in a copy of the
+# tree, as a reader would.
+# What is built already is copied along, so only what the page changes is compiled. Ends with 1 at the first command
+# that fails, with its line in the page.
 set -euo pipefail
 page=$1
 # The page's make commands are a user's: they stand in no other make.

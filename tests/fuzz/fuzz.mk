@@ -1,7 +1,9 @@
-# Fuzzing of everything that reads bytes from outside, by clang's libFuzzer under ASan and UBSan. Included by the top Makefile.
+# Fuzzing of everything that reads bytes from outside, by clang's libFuzzer under ASan and UBSan. Included by the top
+# Makefile.
 #
-# Every tests/fuzz/*_fuzz.cpp is a target. It starts from tests/fuzz/corpus/<target>; what it finds on the way stays in build/fuzz/corpus. An input that breaks a target is kept
-# as build/fuzz/<target>-crash-... (or -timeout-, -oom-), and the run fails.
+# Every tests/fuzz/*_fuzz.cpp is a target. It starts from tests/fuzz/corpus/<target>; what it finds on the way stays in
+# build/fuzz/corpus. An input that breaks a target is kept as build/fuzz/<target>-crash-... (or -timeout-, -oom-), and
+# the run fails.
 #
 # Needs schema.mk and tests/tests.mk.
 

@@ -1,8 +1,8 @@
 #!/bin/bash
 # run.sh: installs, moves the tree to another folder and runs it from a third. Ends with "N passed, N failed".
 #
-# The sources are on this machine, too: the moved tree holds an experiment that they do not have, so a program that read theirs would not
-# find it.
+# The sources are on this machine, too: the moved tree holds an experiment that they do not have, so a program that read
+# theirs would not find it.
 set -uo pipefail
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT

@@ -2,7 +2,8 @@
 # the same bits. Included by the top Makefile.
 #
 # The core is what C, Python, a browser or another simulator can take over: firmware, its HAL, the stand-in on soil, the
-# robots' devices, the measures of leveling. It opens no file, starts no thread and knows no library but lemon's headers.
+# robots' devices, the measures of leveling. It opens no file, starts no thread and knows no library but lemon's
+# headers.
 
 PORTABLE := $(BUILD_ROOT)/portable
 PORTABLE_CXX := aarch64-linux-gnu-g++ -std=c++20 $(COMMON_FLAGS) -Wno-psabi -idirafter /usr/include/eigen3 \

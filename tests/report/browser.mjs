@@ -17,12 +17,14 @@ export function startBrowser() {
   });
 }
 
-/// Until `condition` holds in the page. Looks every so often: a browser that is busy may draw no frame, on which it would look otherwise.
+/// Until `condition` holds in the page. Looks every so often: a browser that is busy may draw no frame, on which it
+/// would look otherwise.
 export function waitFor(page, condition, ...values) {
   return page.waitForFunction(condition, { timeout: patience_ms, polling: 50 }, ...values);
 }
 
-/// { page, complaints }: the page once it stands; complaints grow with console errors, warnings and requests for anything but the file.
+/// { page, complaints }: the page once it stands; complaints grow with console errors, warnings and requests for
+/// anything but the file.
 export async function openReport(browser, file, { scheme = 'light', width = 1280, height = 900 } = {}) {
   const page = await browser.newPage();
   const complaints = [];

@@ -1,4 +1,5 @@
-// report_test.mjs PROGRAM FOLDER: pages of runs in a headless browser, against the CSV and the summary of the same runs.
+// report_test.mjs PROGRAM FOLDER: pages of runs in a headless browser, against the CSV and the summary of the same
+// runs.
 //
 // Ends with "N passed, N failed". FOLDER is for the runs; it is empty.
 import assert from 'node:assert/strict';

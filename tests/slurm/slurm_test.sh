@@ -1,6 +1,6 @@
 #!/bin/bash
-# A campaign through a real Slurm: submitted as a job array, a worker killed, a task killed, its node down and up again, submitted
-# anew; the merged files are those of a local run, byte by byte. SCREED_PROGRAM names the program under test.
+# A campaign through a real Slurm: submitted as a job array, a worker killed, a task killed, its node down and up again,
+# submitted anew; the merged files are those of a local run, byte by byte. SCREED_PROGRAM names the program under test.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd -P)
 

@@ -1,6 +1,7 @@
 #!/bin/bash
-# build.sh LIBRARY.zip OUT.elf: unpacks the library and builds its example as the Arduino IDE would, with Debian's Arduino core:
-# recipes and flags of its platform.txt, recursive src/, and no include folder but src/, the core and the variant.
+# build.sh LIBRARY.zip OUT.elf: unpacks the library and builds its example as the Arduino IDE would, with Debian's
+# Arduino core: recipes and flags of its platform.txt, recursive src/, and no include folder but src/, the core and the
+# variant.
 set -euo pipefail
 
 zip=$(realpath "$1")

@@ -1,8 +1,8 @@
 #!/bin/bash
 # pack.sh BOARD VERSION GENERATED OUT.zip: packs the firmware as a library that the Arduino IDE takes as it is.
 #
-# The IDE compiles every source below src/ with src/ as the only include folder. So the sources keep their paths below src/,
-# and src/pins.h, src/board.h and src/build_info.h lead to the board the library is packed for.
+# The IDE compiles every source below src/ with src/ as the only include folder. So the sources keep their paths below
+# src/, and src/pins.h, src/board.h and src/build_info.h lead to the board the library is packed for.
 set -euo pipefail
 
 board=$1
@@ -27,7 +27,8 @@ find firmware nn/infer hal/avr boards \( -name '*.h' -o -name '*.cpp' \) -print0
 cp --parents hal/*.h "$src"
 # The sketch takes the main program's place, the core's USB that of the image's own.
 rm -r "$src/hal/avr/arduino/main.cpp" "$src/hal/avr/usb"
-# The core's USB takes some 2 kB more than the image's own, and the IDE cannot order the functions: one algorithm more stays out.
+# The core's USB takes some 2 kB more than the image's own, and the IDE cannot order the functions: one algorithm more
+# stays out.
 sed -i 's/^#define SCREED_LEAVE_OUT "training_drive peak_memory strokes"$/#define SCREED_LEAVE_OUT "training_drive peak_memory strokes coverage"/' "$src/firmware/parameters/algorithms_in_build.h"
 grep -q '"training_drive peak_memory strokes coverage"' "$src/firmware/parameters/algorithms_in_build.h"
 # The IDE has flags of its own, and 28,672 bytes as well: what makes the image smaller stands in the sources.

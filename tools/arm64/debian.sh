@@ -1,9 +1,11 @@
 #!/bin/bash
-# What a build for 64-bit Arm takes from Debian beside this system's packages, which stay as they are: apt keeps lists and state of its
-# own below FOLDER.
+# What a build for 64-bit Arm takes from Debian beside this system's packages, which stay as they are: apt keeps lists
+# and state of its own below FOLDER.
 #
-# debian.sh sysroot FOLDER LIST...: headers and libraries for arm64 that the lists of packages name, in FOLDER/root, for a cross compiler and qemu-user.
-# debian.sh ode FOLDER HOST: Debian's source of ODE, compiled by HOST-g++ without fused multiply-add, in FOLDER/lib. On arm64 Debian's own
+# debian.sh sysroot FOLDER LIST...: headers and libraries for arm64 that the lists of packages name, in FOLDER/root, for
+# a cross compiler and qemu-user.
+# debian.sh ode FOLDER HOST: Debian's source of ODE, compiled by HOST-g++ without fused multiply-add, in FOLDER/lib. On
+# arm64 Debian's own
 #   library has it, and so gives other bits than on x86-64.
 set -euo pipefail
 what=$1

@@ -1,6 +1,6 @@
 #!/bin/bash
-# modules.sh ELF: the bytes of code of each module of an image, largest first. A byte belongs to the source line that it was compiled from
-# (addr2line), wherever it was inlined; what has no line are constants, start-up code and libraries.
+# modules.sh ELF: the bytes of code of each module of an image, largest first. A byte belongs to the source line that it
+# was compiled from (addr2line), wherever it was inlined; what has no line are constants, start-up code and libraries.
 set -euo pipefail
 
 elf=$1

@@ -1,7 +1,7 @@
 #!/bin/bash
-# soil_same_bits.sh BUILD_FOLDER: compiles soil, particles, terrain and their tests with other optimisations, links each with the rest
-# of the build, and compares what the robot leaves behind: on soil every height, and where it stands; on particles the hash of the run,
-# in one thread and in two. Ends with 1 when a bit differs.
+# soil_same_bits.sh BUILD_FOLDER: compiles soil, particles, terrain and their tests with other optimisations, links each
+# with the rest of the build, and compares what the robot leaves behind: on soil every height, and where it stands; on
+# particles the hash of the run, in one thread and in two. Ends with 1 when a bit differs.
 set -euo pipefail
 
 build=${1:?the folder of a build, such as build/release}
@@ -26,7 +26,8 @@ for level in -O1 -O3; do
   for source in host_sim/physics/soil/*.cpp host_sim/physics/kernels/*.cpp host_sim/physics/particles/*.cpp host_sim/soil_validation/*.cpp host_sim/physics/terrain/*.cpp; do
     "${CXX:-g++}" @"$build/host.flags" "$level" -c "$source" -o "$work/$level/$(basename "$source" .cpp).o"
   done
-  # The library's objects hold several sources each: of what they define again the linker takes the first, which is ours.
+  # The library's objects hold several sources each: of what they define again the linker takes the first, which is
+  # ours.
   "${CXX:-g++}" "$build/tools/screed/main.o" "$work/$level"/*.o "$build/libscreed.a" -Wl,--allow-multiple-definition -Wl,--as-needed @"$build/link.flags" -o "$work/$level/screed"
   figures "$work/$level/screed" > "$work/$level.txt"
   for threads in 1 2; do

@@ -1,6 +1,7 @@
 #!/bin/bash
-# check_root.sh [FOLDER]: the project's root holds what is listed here and nothing else, whether committed or not: a file that a
-# program leaves behind there is seen before it is committed. What .gitignore names does not count. Ends with 1 otherwise.
+# check_root.sh [FOLDER]: the project's root holds what is listed here and nothing else, whether committed or not: a
+# file that a program leaves behind there is seen before it is committed. What .gitignore names does not count. Ends
+# with 1 otherwise.
 set -euo pipefail
 cd "${1:-.}"
 

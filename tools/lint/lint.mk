@@ -1,7 +1,8 @@
 # Formatting and static analysis. Included by the top Makefile, last.
 
 CPP_FILES := $(shell find firmware hal host_sim nn tools tests boards -name '*.cpp' -o -name '*.h' | LC_ALL=C sort)
-# clang does not know what watchdog.cpp and reset_cause.cpp are made of: instructions of avr-libc's wdt.h, a naked function in C++.
+# clang does not know what watchdog.cpp and reset_cause.cpp are made of: instructions of avr-libc's wdt.h, a naked
+# function in C++.
 AVR_TIDY_SOURCES := $(filter-out hal/avr/watchdog.cpp hal/avr/reset_cause.cpp,$(call sources,hal/avr))
 
 # clang-tidy looks at some sixty sources at a time (tools/lint/units.awk), again when one of their objects is new.
@@ -58,8 +59,8 @@ check-links:
 	@tools/lint/check_links.sh
 format:  ## clang-format over the tree
 	clang-format -i $(CPP_FILES)
-# Without -Werror: compilers' warnings are the build's, by its compiler. (With the analyser among its checks clang-tidy takes no
-# notice of it anyway.) And without the parameters that GCC alone knows.
+# Without -Werror: compilers' warnings are the build's, by its compiler. (With the analyser among its checks clang-tidy
+# takes no notice of it anyway.) And without the parameters that GCC alone knows.
 $(B)/lint.flags: $(B)/host.flags | $(B)/tiny_dnn/third_party/stb
 	@echo "$$(sed 's/-Werror//; s/--param=[^ ]*//' $<) -idirafter $(B)/tiny_dnn $(RSVG_FLAGS) $(SDL_FLAGS)" > $@
 # Flags are taken as they stand, by no shell: without the quotes that keep the others from one.

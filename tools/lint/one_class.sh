@@ -1,6 +1,6 @@
 #!/bin/bash
-# one_class.sh: a class stands in one header. Two of one name in one namespace are one class to the linker, which takes the inline
-# functions and destructors of whichever it meets first; no compiler says so when no source includes both.
+# one_class.sh: a class stands in one header. Two of one name in one namespace are one class to the linker, which takes
+# the inline functions and destructors of whichever it meets first; no compiler says so when no source includes both.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -1,7 +1,8 @@
 #!/bin/bash
-# one_source.sh: facts that stand once. A source that lists three or more soil parameters or named soils beside their table, or that
-# names a board, repeats what is to be made from the table. Tests may: they say what must come out. And libraries whose headers cost a
-# compiler seconds: one source includes them, whatever the others need of them stands in a header of ours.
+# one_source.sh: facts that stand once. A source that lists three or more soil parameters or named soils beside their
+# table, or that names a board, repeats what is to be made from the table. Tests may: they say what must come out. And
+# libraries whose headers cost a compiler seconds: one source includes them, whatever the others need of them stands in
+# a header of ours.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

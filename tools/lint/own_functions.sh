@@ -1,7 +1,8 @@
 #!/bin/sh
-# What a run's bytes depend on, and what is measured of it, calls none of the C library's functions whose bits depend on the processor,
-# nor Eigen's rotations and solutions, which call them or add in an order of their own: portable:: (host_sim/core/elementary.h), rotation.h
-# and cholesky.h have ours. usage: own_functions.sh. Ends with 1 and one line per call.
+# What a run's bytes depend on, and what is measured of it, calls none of the C library's functions whose bits depend on
+# the processor, nor Eigen's rotations and solutions, which call them or add in an order of their own: portable::
+# (host_sim/core/elementary.h), rotation.h and cholesky.h have ours. usage: own_functions.sh. Ends with 1 and one line
+# per call.
 #
 # Others may: pictures, pages, the ground station, fits, training (docs/determinism.md).
 set -eu

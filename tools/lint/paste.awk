@@ -1,7 +1,7 @@
-# One text of several sources, for clang-tidy: most of a run goes into the headers, which they share, and the analyser looks at no function
-# of a file that is included. Each file is given twice, first to see which helpers' names (in anonymous namespaces, at the left margin,
-# where clang-format keeps them) stand in several files: these are told apart by a macro. A test's namespace gets a name, as in a group
-# (tools/build/group.awk).
+# One text of several sources, for clang-tidy: most of a run goes into the headers, which they share, and the analyser
+# looks at no function of a file that is included. Each file is given twice, first to see which helpers' names (in
+# anonymous namespaces, at the left margin, where clang-format keeps them) stand in several files: these are told apart
+# by a macro. A test's namespace gets a name, as in a group (tools/build/group.awk).
 function declared(line) {
   sub(/[(={;[].*/, "", line)
   sub(/ : .*/, "", line)  # base classes

@@ -1,11 +1,13 @@
 #!/bin/bash
-# tidy.sh STAMP FLAGS CHECKS SOURCE...: clang-tidy over sources pasted into one (paste.awk), with the flags of a file and CHECKS behind those
-# of .clang-tidy. Of sources that do not compile together, each half is looked at. Makes STAMP when all are clean.
+# tidy.sh STAMP FLAGS CHECKS SOURCE...: clang-tidy over sources pasted into one (paste.awk), with the flags of a file
+# and CHECKS behind those of .clang-tidy. Of sources that do not compile together, each half is looked at. Makes STAMP
+# when all are clean.
 set -uo pipefail
 stamp=$1 flags=$2 checks=$3
 shift 3
 
-# The analyser gives up a function after so many steps: most of its time would go into what lies beyond, long functions of many branches.
+# The analyser gives up a function after so many steps: most of its time would go into what lies beyond, long functions
+# of many branches.
 # Firmware is looked at to the end.
 steps=4000
 case $flags in */firmware.flags | */avr.flags) steps=225000 ;; esac

@@ -1,6 +1,7 @@
 #!/bin/bash
-# one_node.sh start|stop FOLDER: a Slurm cluster of this machine alone, for tests; needs Debian's slurm-wlm and munge, root, and no
-# systemd. `start` prints what to set: export SLURM_CONF=FOLDER/slurm.conf. A node is idle after about a second.
+# one_node.sh start|stop FOLDER: a Slurm cluster of this machine alone, for tests; needs Debian's slurm-wlm and munge,
+# root, and no systemd. `start` prints what to set: export SLURM_CONF=FOLDER/slurm.conf. A node is idle after about a
+# second.
 set -euo pipefail
 command=${1:-} folder=${2:-}
 [ -n "$folder" ] || { sed -n '2,3s/^# //p' "$0" >&2; exit 2; }

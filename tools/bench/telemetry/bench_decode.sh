@@ -1,6 +1,7 @@
 #!/bin/bash
-# bench_decode.sh SCREED TELEMETRY_LAB PROFILE FRAMES: how many frames a second `screed decode` and tshark read of one log. Wall clock,
-# the best of three runs of ours (tshark, which takes long, runs once), and the processor's time, which other programs disturb less.
+# bench_decode.sh SCREED TELEMETRY_LAB PROFILE FRAMES: how many frames a second `screed decode` and tshark read of one
+# log. Wall clock, the best of three runs of ours (tshark, which takes long, runs once), and the processor's time, which
+# other programs disturb less.
 set -euo pipefail
 screed=$1 lab=$2 profile=$3 frames=$4
 

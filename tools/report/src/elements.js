@@ -18,7 +18,8 @@ export function select(label, options, onChange, chosen) {
   return element('label', {}, label, made);
 }
 
-/// Rows of cells; a cell is text, an element, or { number, text } for a figure, which keeps all its digits in data-value.
+/// Rows of cells; a cell is text, an element, or { number, text } for a figure, which keeps all its digits in
+/// data-value.
 export function table(head, rows) {
   const cell = (kind, content) => {
     if (content !== null && typeof content === 'object' && 'number' in content) {

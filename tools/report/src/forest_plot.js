@@ -1,4 +1,5 @@
-// Rows with a name, and beside each its figures as points with intervals, in columns of one axis each. SVG, coloured by the style sheet.
+// Rows with a name, and beside each its figures as points with intervals, in columns of one axis each. SVG, coloured by
+// the style sheet.
 import { plainNumber } from './elements.js';
 
 const rowHeight = 24;
@@ -46,8 +47,8 @@ function axis(group, scale, range, top, bottom, width, title, label) {
     svg('text', { x: (scale(range[0]) + scale(range[1])) / 2, y: bottom + 36, class: 'tick' }, label));
 }
 
-/// `rows`: names. `columns`: [{ title, label, zero, values: [{ mean, low, high, all }] }]: `all` are single values behind the mean, `zero` draws that
-/// line. A value may be null.
+/// `rows`: names. `columns`: [{ title, label, zero, values: [{ mean, low, high, all }] }]: `all` are single values
+/// behind the mean, `zero` draws that line. A value may be null.
 export function forestPlot(parent, rows, columns) {
   const width = Math.max(600, parent.clientWidth - 20);
   const names = Math.min(maxName, 30 + letter * Math.max(...rows.map((row) => row.length)));

@@ -287,8 +287,8 @@ export class TerrainView {
     this.update(this.row, this.poses, true);
   }
 
-  /// Shows the heights as they are, the paths up to `row` and the robots at `poses` (x, y, z, roll, pitch, yaw). `changed`: the
-  /// surface is to be drawn anew.
+  /// Shows the heights as they are, the paths up to `row` and the robots at `poses` (x, y, z, roll, pitch, yaw).
+  /// `changed`: the surface is to be drawn anew.
   update(row, poses, changed) {
     this.row = row;
     this.poses = poses;
