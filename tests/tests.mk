@@ -27,7 +27,8 @@ TEST_LIBRARIES = $$(pkg-config --libs $(TEST_PACKAGES))
 # compiled the linker takes the first it meets.
 define link_tests
 	@echo "  LINK $@"
-	@$(CXX) -Wl,--whole-archive $(LIBRARY) -Wl,--no-whole-archive $(filter-out $(LIBRARY),$(filter %.o %.a,$^)) -Wl,--as-needed \
+	@$(CXX) -Wl,--whole-archive $(LIBRARY) -Wl,--no-whole-archive $(filter-out $(LIBRARY),$(filter %.o %.a,$^)) \
+	  -Wl,--as-needed \
 	  @$(B)/link.flags $(TEST_LIBRARIES) -o $@
 	$(call runnable,$@)
 endef
@@ -41,7 +42,8 @@ $(LONG_TESTS): $(LONG_OBJECTS) $(MCU_LONG_PARTS) $(TESTED) $(B)/link.flags
 	$(call link_tests)
 
 # Every host source that is compiled with the host's flags or the firmware's: what lint and clangd look at.
-ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp $(call sources,tools/avr tools/schema tools/bench tools/mutants tests/unit tests/sitl tests/portable) $(LONG_SOURCES)
+ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp \
+  $(call sources,tools/avr tools/schema tools/bench tools/mutants tests/unit tests/sitl tests/portable) $(LONG_SOURCES)
 
 # Expanded twice: later parts add their tests.
 .SECONDEXPANSION:
@@ -56,7 +58,8 @@ test-long: $(SCREED) $(LONG_TESTS) $$(TEST_IMAGES)  ## build and run those that 
 .PHONY: test-file test-tutorial
 test-file: $(SCREED) $(B)/tests/test_file  ## build and run single tests (TEST='tests/unit/firmware/leveling/*_test.cpp')
 	@SCREED_PROGRAM=$(abspath $(SCREED)) $(B)/tests/test_file $(ARGS)
-$(B)/tests/test_file: $(call objects,$(wildcard $(TEST)) $(filter-out %_test.cpp,$(UNIT_SOURCES))) $(TESTED) $(B)/link.flags FORCE
+$(B)/tests/test_file: $(call objects,$(wildcard $(TEST)) $(filter-out %_test.cpp,$(UNIT_SOURCES))) $(TESTED) \
+  $(B)/link.flags FORCE
 	$(if $(wildcard $(TEST)),,$(error TEST='FILE...' names sources of tests; there is none of the name '$(TEST)'))
 	$(call link_tests)
 test-tutorial: $(SCREED)  ## the commands of docs/tutorial.md, from top to bottom, in a copy of the tree

@@ -38,7 +38,8 @@ endif
 USB_SUFFIX_core := _usb_core
 FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)$(USB_SUFFIX_$(USB))$(NODE:%=_node_%)$(LEVELING:%=_%)
 FIRMWARE_ELF := $(FIRMWARE_BUILD)/screed.elf
-FIRMWARE_SOURCES := $(filter-out hal/avr/usb/% hal/avr/arduino/%,$(call sources,firmware nn/infer hal/avr)) $(call sources,$(USB_FOLDER_$(USB)))
+FIRMWARE_SOURCES := $(filter-out hal/avr/usb/% hal/avr/arduino/%,$(call sources,firmware nn/infer hal/avr)) \
+  $(call sources,$(USB_FOLDER_$(USB)))
 FIRMWARE_STARTUP := $(FIRMWARE_BUILD)/hal/avr/startup.o
 FIRMWARE_OBJECTS := $(FIRMWARE_STARTUP) $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o)
 
@@ -47,7 +48,8 @@ FIRMWARE_OBJECTS := $(FIRMWARE_STARTUP) $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUIL
 # -fno-toplevel-reorder: functions lie in the order of the sources, so callers lie near what they call (a call within 4
 # kB is 2 bytes shorter).
 # Optimisations of gcc-avr 5.4 that make the image larger (docs/firmware-budget.md). The Arduino library names them too.
-SMALLER := no-gcse no-move-loop-invariants no-tree-loop-im no-tree-dominator-opts no-tree-tail-merge no-tree-ter no-ipa-cp no-ipa-sra
+SMALLER := no-gcse no-move-loop-invariants no-tree-loop-im no-tree-dominator-opts no-tree-tail-merge no-tree-ter \
+  no-ipa-cp no-ipa-sra
 # -g: `make size` names the sources; nothing of it is flashed.
 AVR_FLAGS := -std=c++14 -Os -g -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -flto -fno-fat-lto-objects \
   -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-jump-tables -ffunction-sections -fdata-sections \
@@ -62,7 +64,8 @@ AVR_FLAGS += -DSCREED_NODE=$(NODE)
 endif
 # make firmware LEVELING=NAME: the image whose default algorithm is that one; it has no other but `drive`, unless
 # LEAVE_OUT says so.
-ALGORITHM_NUMBERS := $(shell sed -nE 's/^VAL_ [0-9]+ algorithm //p' $(SCHEMA) | sed -E 's/([0-9]+) "(\w+)"/\2=\1/g; s/;//')
+ALGORITHM_NUMBERS := $(shell sed -nE 's/^VAL_ [0-9]+ algorithm //p' $(SCHEMA) | \
+  sed -E 's/([0-9]+) "(\w+)"/\2=\1/g; s/;//')
 ifdef LEVELING
 ALGORITHMS := $(foreach it,$(ALGORITHM_NUMBERS),$(firstword $(subst =, ,$(it))))
 ifneq ($(filter $(LEVELING),$(filter-out drive,$(ALGORITHMS))) 1,$(LEVELING) $(words $(LEVELING)))
@@ -118,7 +121,8 @@ firmware-budget: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(B)
 # The ELF file lists them, a bit each (hal/avr/hal.cpp).
 firmware-algorithms: $(FIRMWARE_ELF)
 	@bits=$$($(AVR_OBJCOPY) -O binary --set-section-flags .screed.algorithms=alloc -j .screed.algorithms $< /dev/stdout | od -An -tu2) ; \
-	  has="" ; for it in $(ALGORITHM_NUMBERS) ; do [ $$(( bits >> $${it#*=} & 1 )) -eq 0 ] || has="$$has $${it%=*}" ; done ; \
+	  has="" ; for it in $(ALGORITHM_NUMBERS) ; do [ $$(( bits >> $${it#*=} & 1 )) -eq 0 ] || has="$$has $${it%=*}" ; \
+	  done ; \
 	  echo "leveling algorithms       $${has# }" ; \
 	  case "$$has" in *strokes*) ;; *) echo "  strokes, which levels best, is in the image of LEVELING=strokes" ;; esac
 
@@ -148,7 +152,8 @@ $(FIRMWARE_BUILD)/generated/build_info.h: FORCE
 	@mkdir -p $(@D)
 	@{ echo '#define SCREED_VERSION "$(COMMIT)"' ; echo '#define SCREED_BOARD "$(BOARD)"' ; \
 	   echo '#define SCREED_USB_VID $(BOARD_USB_VID)' ; echo '#define SCREED_USB_PID $(BOARD_USB_PID)' ; \
-	   echo '#define SCREED_USB_MANUFACTURER "$(BOARD_USB_MANUFACTURER)"' ; echo '#define SCREED_USB_PRODUCT "$(BOARD_USB_PRODUCT)"' ; } > $@.new
+	   echo '#define SCREED_USB_MANUFACTURER "$(BOARD_USB_MANUFACTURER)"' ; \
+	   echo '#define SCREED_USB_PRODUCT "$(BOARD_USB_PRODUCT)"' ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 
 $(FIRMWARE_BUILD)/%.o: %.cpp $(FIRMWARE_BUILD)/avr.flags | $(FIRMWARE_BUILD)/generated/build_info.h $(SCHEMA_HEADERS)
@@ -166,19 +171,23 @@ $(FIRMWARE_BUILD)/arduino/%.cpp.o: $(ARDUINO_CORE)/%.cpp $(FIRMWARE_BUILD)/avr.f
 	@$(AVR_CXX) $(AVR_FLAGS) -std=gnu++11 -w $(ARDUINO_FLAGS) -c $< -o $@
 $(FIRMWARE_BUILD)/arduino/%.c.o: $(ARDUINO_CORE)/%.c $(FIRMWARE_BUILD)/avr.flags
 	@mkdir -p $(@D)
-	@$(AVR_CC) $(patsubst -std=%,-std=gnu11,$(filter-out -fno-rtti -fno-threadsafe-statics,$(AVR_FLAGS))) -w $(ARDUINO_FLAGS) -c $< -o $@
+	@$(AVR_CC) $(patsubst -std=%,-std=gnu11,$(filter-out -fno-rtti -fno-threadsafe-statics,$(AVR_FLAGS))) -w \
+	  $(ARDUINO_FLAGS) -c $< -o $@
 
 $(FIRMWARE_ELF): $(FIRMWARE_OBJECTS) $(ARDUINO_OBJECTS_$(USB)) $(LINKER_SCRIPT)
 	@echo "  LINK $@"
-	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) -Wl,-T,$(LINKER_SCRIPT) -Wl,-Map,$(@:.elf=.map) $(filter %.o,$^) -o $@
+	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) -Wl,-T,$(LINKER_SCRIPT) -Wl,-Map,$(@:.elf=.map) $(filter %.o,$^) \
+	  -o $@
 
 $(LINKER_SCRIPT): $(FUNCTION_ORDER) $(FIRMWARE_BUILD)/avr.flags
 	@$(AVR_LD) -m $(AVR_EMULATION) --verbose | awk -v list=$< ' \
 	  /^=====/ {inside = !inside; next} !inside {next} \
-	  !done && /^ *\*\(\.text\)/ {while ((getline name < list) > 0) if (name !~ /^#/) print "    *(" name ")"; done = 1} {print} \
+	  !done && /^ *\*\(\.text\)/ {while ((getline name < list) > 0) if (name !~ /^#/) print "    *(" name ")"; done = 1} \
+	  {print} \
 	  END {if (!done) {print "the linker script has no *(.text)" > "/dev/stderr"; exit 1}}' > $@
 	@for number in $$(seq $$(($(LAST_VECTOR) + 1)) 63) ; do \
-	   echo "ASSERT(!DEFINED(__vector_$$number), \"an interrupt handler beyond LAST_VECTOR of hal/avr/firmware.mk\")" ; done >> $@
+	   echo "ASSERT(!DEFINED(__vector_$$number), \"an interrupt handler beyond LAST_VECTOR of hal/avr/firmware.mk\")" ; \
+	   done >> $@
 
 function-order: $(FIRMWARE_ELF) $(FIRMWARE_BUILD)/screed.lst $(B)/avr_order  ## search the order of the image's functions with the fewest long calls
 	@{ echo "# Sections of the image's functions in the order in which they lie. Made by: make function-order" ; \

@@ -7,7 +7,8 @@
 # Sessions that are there already are not recorded again. Needs host.mk.
 
 MODELS ?= v1 v2 v2_tuned v2_products v2_forward v2_gyro
-SURROGATE_SESSIONS ?= $(sort $(wildcard host_sim/data/experiments/sessions/v1_*.ini host_sim/data/experiments/sessions/v2_*.ini))
+SURROGATE_SESSIONS ?= $(sort $(wildcard host_sim/data/experiments/sessions/v1_*.ini \
+  host_sim/data/experiments/sessions/v2_*.ini))
 
 .PHONY: surrogate
 surrogate: $(SCREED)  ## train, evaluate and export the networks of the thesis (MODELS='v1 v2' FRAMES=4000 ARGS='--epochs 2')
@@ -41,5 +42,6 @@ STANDIN_OUT := $(OUT)/sessions/standin$(if $(FRAMES),-$(FRAMES))
 standin-check: $(SCREED)  ## record drives and judge the stand-in beside them (5 minutes; ROWS='c_*': those of the choice; short: FRAMES=6000)
 	@$(SCREED) record $(STANDIN).ini --table $(STANDIN).csv --rows '$(or $(ROWS),e_*)' --missing --out $(STANDIN_OUT) \
 	   $(if $(FRAMES),--frames $(FRAMES))
-	@for drive in tracks firmware ; do $(SCREED) nn rollout $(STANDIN_OUT)/$(or $(ROWS),e_*)-0001 --drive $$drive $(ARGS) ; done
+	@for drive in tracks firmware ; \
+	  do $(SCREED) nn rollout $(STANDIN_OUT)/$(or $(ROWS),e_*)-0001 --drive $$drive $(ARGS) ; done
 	@$(SCREED) nn ground $(STANDIN_OUT)/$(or $(ROWS),e_*)-0001

@@ -12,8 +12,9 @@ export function startBrowser() {
     headless: true,
     protocolTimeout: patience_ms,
     // A page behind another goes on as well.
-    args: ['--disable-backgrounding-occluded-windows', '--disable-renderer-backgrounding', '--disable-background-timer-throttling',
-      '--no-sandbox', '--disable-dev-shm-usage', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb'],
+    args: ['--disable-backgrounding-occluded-windows', '--disable-renderer-backgrounding',
+      '--disable-background-timer-throttling', '--no-sandbox', '--disable-dev-shm-usage',
+      '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb'],
   });
 }
 
@@ -31,7 +32,8 @@ export async function openReport(browser, file, { scheme = 'light', width = 1280
   const url = pathToFileURL(file).href;
   page.on('console', (message) => {
     // What the driver of the software renderer says of its own speed is none of the page's.
-    if (['error', 'warn', 'assert'].includes(message.type()) && !message.text().includes('GPU stall')) complaints.push(message.text());
+    if (['error', 'warn', 'assert'].includes(message.type()) &&
+      !message.text().includes('GPU stall')) complaints.push(message.text());
   });
   page.on('pageerror', (error) => complaints.push(String(error)));
   page.on('request', (request) => {

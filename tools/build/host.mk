@@ -45,7 +45,8 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wno
 # GCC collects what it no longer needs only when it holds half a gigabyte: collecting is a tenth of its time.
 GCC_HEAP = $(if $(findstring clang,$(CXX)),,--param=ggc-min-heapsize=524288)
 # The same bits on every processor: no fused multiply-add, and Eigen adds in no order of its vector code.
-COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fno-math-errno -I. -I$(BUILD_ROOT)/generated
+COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fno-math-errno -I. \
+  -I$(BUILD_ROOT)/generated
 
 PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash ncursesw
 TEST_PACKAGES := gtest_main mpfr
@@ -89,13 +90,15 @@ $(B)/tiny_dnn/third_party/stb:
 	@ln -sfn "$$(pkg-config --variable=includedir stb)" $@
 # Large matrices on which no world's bits depend: Eigen with its vector code, by another name, since a linker takes one
 # of two that are called alike.
-VECTOR_SOURCES := nn/training/predict.cpp nn/terrain/flux_trainer.cpp nn/terrain/window_network.cpp tools/bench/speed/network_bench.cpp
+VECTOR_SOURCES := nn/training/predict.cpp nn/terrain/flux_trainer.cpp nn/terrain/window_network.cpp \
+  tools/bench/speed/network_bench.cpp
 $(call objects,$(VECTOR_SOURCES)): EXTRA_FLAGS += -UEIGEN_DONT_VECTORIZE -DEigen=EigenVectorised
 RSVG_FLAGS = $(shell $(call package_flags,librsvg-2.0))
 RSVG_SOURCES := host_sim/render/chart/svg_png.cpp
 $(call objects,$(RSVG_SOURCES)): EXTRA_FLAGS = $(RSVG_FLAGS)
 SDL_FLAGS = $(shell $(call package_flags,sdl2))
-SDL_SOURCES := tools/screed/viewer/window.cpp tools/screed/viewer/gamepad_input.cpp tests/unit/tools/screed/viewer/gamepad_input_test.cpp
+SDL_SOURCES := tools/screed/viewer/window.cpp tools/screed/viewer/gamepad_input.cpp \
+  tests/unit/tools/screed/viewer/gamepad_input_test.cpp
 $(call objects,$(SDL_SOURCES)): EXTRA_FLAGS = $(SDL_FLAGS)
 
 # ---- generated headers: what the program knows of its surroundings; only files that include them depend on them
@@ -125,7 +128,8 @@ $(B)/generated/boards.h: FORCE
 $(B)/generated/commands.h: FORCE
 	@mkdir -p $(@D)
 	@tools/build/commands.sh $(COMMAND_SOURCES) | $(WRITE_CHANGED)
-GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boards.h $(B)/generated/commands.h $(SCHEMA_HEADERS)
+GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boards.h $(B)/generated/commands.h \
+  $(SCHEMA_HEADERS)
 
 # ---- headers of libraries, compiled once: a third to a half of a source's time goes into them ------------------------
 
@@ -135,7 +139,8 @@ HEADERS ?= yes
 ifeq ($(HEADERS),yes)
 # Behind them GCC 12 takes `std::string(kText) + "more"` for a write out of bounds; clang does not know the second of
 # the flags.
-HEADERS_FLAGS = $(if $(HEADER_SET),-include $(B)/headers/$(HEADER_SET).h $(if $(findstring clang,$(CXX)),,-Wno-array-bounds -Wno-stringop-overflow))
+HEADERS_FLAGS = $(if $(HEADER_SET),-include $(B)/headers/$(HEADER_SET).h \
+  $(if $(findstring clang,$(CXX)),,-Wno-array-bounds -Wno-stringop-overflow))
 define with_headers
 $(call objects,$(2)): HEADER_SET = $(1)
 $(call objects,$(2)): $(B)/headers/$(1).h.gch
@@ -149,7 +154,8 @@ endif
 SET_FLAGS_cold := $(if $(filter release,$(BUILD)),-O1,-O0)
 SET_FLAGS_test := -O0
 SET_FLAGS = $(SET_FLAGS_$(HEADER_SET))
-COLD_SOURCES := $(COMMAND_LINE_SOURCES) $(PROGRAM_SOURCES) $(filter $(addsuffix /%,$(addprefix host_sim/,campaign engine benchmark search soil_validation \
+COLD_SOURCES := $(COMMAND_LINE_SOURCES) $(PROGRAM_SOURCES) \
+  $(filter $(addsuffix /%,$(addprefix host_sim/,campaign engine benchmark search soil_validation \
   ground_station/link ground_station/station ground_station/calibration run/experiment run/report run/comparison \
   render/chart render/report physics/vehicle/urdf)),$(HOST_SOURCES))
 
@@ -160,7 +166,8 @@ $(B)/headers/$(1).h.gch: tools/build/headers/$(2).h $(B)/host.flags
 	@mkdir -p $$(@D)
 	@echo "  CXX  $$< $$(SET_FLAGS)"
 	@cp $$< $$(@:.gch=)
-	@$$(CXX) @$(B)/host.flags $$(SET_FLAGS) $(if $(findstring clang,$(CXX)),-fpch-instantiate-templates) -x c++-header $$< -o $$@
+	@$$(CXX) @$(B)/host.flags $$(SET_FLAGS) $(if $(findstring clang,$(CXX)),-fpch-instantiate-templates) -x c++-header \
+	  $$< -o $$@
 endef
 $(eval $(call headers_of_set,host,host))
 $(eval $(call headers_of_set,cold,host))
@@ -184,7 +191,8 @@ GROUP_test := 24
 define in_groups
 $(call with_headers,$(3),$(2))
 $(1)_ALONE := $(filter $(ALONE),$(2)) $(filter tests/%,$(filter-out %_test.cpp,$(2)))
-$(1)_GROUPS := $$(shell printf '%s\n' $$(filter-out $(ALONE) $$($(1)_ALONE),$(or $(5),$(2))) | awk -v most=$(GROUP_$(3)) -v only="$(if $(5),$(2))" -f tools/build/groups.awk)
+$(1)_GROUPS := $$(shell printf '%s\n' $$(filter-out $(ALONE) $$($(1)_ALONE),$(or $(5),$(2))) | \
+  awk -v most=$(GROUP_$(3)) -v only="$(if $(5),$(2))" -f tools/build/groups.awk)
 $(1)_GROUP_OBJECTS := $$(foreach group,$$($(1)_GROUPS),$(B)/groups/$(1)/$$(firstword $$(subst :, ,$$(group))).o)
 $(1)_OBJECTS := $$($(1)_GROUP_OBJECTS) $$(call objects,$$($(1)_ALONE))
 $$($(1)_GROUP_OBJECTS): HEADER_SET = $(3)
@@ -198,7 +206,8 @@ $(B)/groups/%.cpp: tools/build/group.awk FORCE
 	@awk -f tools/build/group.awk $(filter-out %.awk FORCE,$^) | $(WRITE_CHANGED)
 $(B)/groups/%.o: $(B)/groups/%.cpp $(B)/host.flags | $(GENERATED)
 	@echo "  CXX  $(notdir $*)"
-	@$(CXX) @$(B)/host.flags $(GROUP_FLAGS) $(HEADERS_FLAGS) $(if $(findstring clang,$(CXX)),,-Wno-subobject-linkage) $(SET_FLAGS) -MMD -MP -c $< -o $@
+	@$(CXX) @$(B)/host.flags $(GROUP_FLAGS) $(HEADERS_FLAGS) $(if $(findstring clang,$(CXX)),,-Wno-subobject-linkage) \
+	  $(SET_FLAGS) -MMD -MP -c $< -o $@
 
 $(eval $(call in_groups,HOT,$(filter-out $(COLD_SOURCES),$(HOST_SOURCES)),host))
 $(eval $(call in_groups,COLD,$(COLD_SOURCES),cold))

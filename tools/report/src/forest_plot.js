@@ -55,7 +55,9 @@ export function forestPlot(parent, rows, columns) {
   const columnWidth = (width - names) / columns.length - gap;
   const top = headHeight;
   const bottom = top + rows.length * rowHeight;
-  const root = svg('svg', { class: 'forest', width, height: bottom + axisHeight, role: 'img', 'aria-label': columns.map((column) => column.title).join(', ') });
+  const root = svg('svg',
+    { class: 'forest', width, height: bottom + axisHeight, role: 'img',
+      'aria-label': columns.map((column) => column.title).join(', ') });
   rows.forEach((row, i) => {
     const y = top + (i + 0.5) * rowHeight;
     root.append(svg('line', { x1: 0, x2: width, y1: y + rowHeight / 2, y2: y + rowHeight / 2, class: 'row' }));
@@ -66,7 +68,8 @@ export function forestPlot(parent, rows, columns) {
   columns.forEach((column, i) => {
     const left = names + i * (columnWidth + gap);
     const values = column.values.filter((value) => value !== null);
-    const range = rangeOf(values.flatMap((value) => [value.low, value.high, value.mean, ...(value.all ?? [])]), column.zero);
+    const range = rangeOf(values.flatMap((value) => [value.low, value.high, value.mean, ...(value.all ?? [])]),
+      column.zero);
     const scale = (number) => left + ((number - range[0]) / (range[1] - range[0])) * columnWidth;
     const group = svg('g', { 'data-column': column.title });
     axis(group, scale, range, top, bottom, columnWidth, column.title, column.label);
@@ -77,7 +80,8 @@ export function forestPlot(parent, rows, columns) {
       for (const single of value.all ?? []) {
         if (Number.isFinite(single)) group.append(svg('circle', { cx: scale(single), cy: y, r: 2.5, class: 'single' }));
       }
-      if (Number.isFinite(value.low)) group.append(svg('line', { x1: scale(value.low), x2: scale(value.high), y1: y, y2: y, class: 'interval' }));
+      if (Number.isFinite(value.low)) group.append(
+        svg('line', { x1: scale(value.low), x2: scale(value.high), y1: y, y2: y, class: 'interval' }));
       group.append(svg('circle', { cx: scale(value.mean), cy: y, r: 4.5, class: 'mean', 'data-row': row }));
     });
     root.append(group);
