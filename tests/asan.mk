@@ -34,7 +34,7 @@ ASAN_UNIT_SOURCES := $(foreach name,$(ASAN_UNIT),$(filter %/$(name)_test.cpp,$(U
   tests/unit/allocations.cpp
 ASAN_MCU_SOURCES := $(ASAN_MCU:%=tests/mcu/%_test.cpp)
 ASAN_THERE := $(notdir $(UNIT_SOURCES) $(MCU_TEST_SOURCES))
-ASAN_MISSING := $(strip $(foreach name,$(ASAN_UNIT) $(ASAN_MCU),$(if $(filter $(name)_test.cpp,$(ASAN_THERE)),,$(name))))
+ASAN_MISSING := $(filter-out $(ASAN_THERE:%_test.cpp=%),$(ASAN_UNIT) $(ASAN_MCU))
 ifneq ($(ASAN_MISSING),)
 $(error tests/asan.mk: no such test: $(ASAN_MISSING))
 endif

@@ -15,7 +15,8 @@ run_tests() {
   "$program" --gtest_brief=1 --gtest_filter="$names" --gtest_output="xml:$mine.xml" > "$mine.log" 2>&1 || status=$?
   if [ -s "$mine.xml" ]; then
     lines=$(awk -v program="$program" '
-      function value(attribute) { match($0, " " attribute "=\"[^\"]*\""); return substr($0, RSTART + length(attribute) + 3, RLENGTH - length(attribute) - 4) }
+      function value(attribute) { match($0, " " attribute "=\"[^\"]*\"");
+        return substr($0, RSTART + length(attribute) + 3, RLENGTH - length(attribute) - 4) }
       function finish() { if (test != "") print verdict, time, program, test; test = "" }
       /^    <testcase / { finish(); test = value("classname") "." value("name"); time = int(1000 * value("time") + 0.5)
                           verdict = value("result") == "skipped" ? "skipped" : "passed" }
@@ -57,7 +58,8 @@ touch "$times"
 
 for program in "$@"; do
   # A parameter's value stands behind the name.
-  "$program" --gtest_list_tests | awk -v program="$program" '/^[^ ]/ { suite = $1; next } { print program, suite $1; found = 1 }
+  "$program" --gtest_list_tests |
+    awk -v program="$program" '/^[^ ]/ { suite = $1; next } { print program, suite $1; found = 1 }
     END { exit !found }' || echo "$program no_tests_found"
 done > "$folder/tests"
 
@@ -77,9 +79,12 @@ awk -v times="$times" '
   xargs -r -d '\n' -n 1 -P "$(nproc)" "$0" --batch "$folder"
 
 cat "$folder"/*.results 2> /dev/null > "$folder/results"
-awk 'FILENAME ~ /results$/ { seen[$3 " " $4] = 1; next } !($0 in seen) { print "failed 0 " $0 }' "$folder/results" "$folder/tests" > "$folder/missing"
-[ -s "$folder/missing" ] && cut -d' ' -f3- "$folder/missing" | sed 's/$/: no result/' && cat "$folder/missing" >> "$folder/results"
-cut -d' ' -f2- "$folder/results" | cat - "$times" | awk '!seen[$2 " " $3]++' > "$folder/times" && cp "$folder/times" "$times"
+awk 'FILENAME ~ /results$/ { seen[$3 " " $4] = 1; next } !($0 in seen) { print "failed 0 " $0 }' "$folder/results" \
+  "$folder/tests" > "$folder/missing"
+[ -s "$folder/missing" ] && cut -d' ' -f3- "$folder/missing" | sed 's/$/: no result/' &&
+  cat "$folder/missing" >> "$folder/results"
+cut -d' ' -f2- "$folder/results" | cat - "$times" | awk '!seen[$2 " " $3]++' > "$folder/times" &&
+  cp "$folder/times" "$times"
 echo "The longest:"
 sort -k2,2rn "$folder/results" | head -10 | awk '{ printf "%8.1f s  %s\n", $2 / 1000, $4 }'
 

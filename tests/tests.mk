@@ -48,15 +48,18 @@ ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp \
 # Expanded twice: later parts add their tests.
 .SECONDEXPANSION:
 .PHONY: test test-long
-test: $(SCREED) $$(TESTS) $$(TEST_IMAGES)  ## build and run the tests that take seconds (BUILD=asan: under the sanitizers)
+test:  ## build and run the tests that take seconds (BUILD=asan: under the sanitizers)
+test: $(SCREED) $$(TESTS) $$(TEST_IMAGES)
 	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/run.sh $(TESTS)
-test-long: $(SCREED) $(LONG_TESTS) $$(TEST_IMAGES)  ## build and run those that take longer: long drives, whole runs, minutes of the microcontroller
+test-long:  ## build and run those that take longer: long drives, whole runs, minutes of the microcontroller
+test-long: $(SCREED) $(LONG_TESTS) $$(TEST_IMAGES)
 	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/run.sh $(LONG_TESTS)
 
 # The tests of single sources: quick to build, for whoever works on them. Which ones, no date of a file says: linked
 # each time.
 .PHONY: test-file test-tutorial
-test-file: $(SCREED) $(B)/tests/test_file  ## build and run single tests (TEST='tests/unit/firmware/leveling/*_test.cpp')
+test-file:  ## build and run single tests (TEST='tests/unit/firmware/leveling/*_test.cpp')
+test-file: $(SCREED) $(B)/tests/test_file
 	@SCREED_PROGRAM=$(abspath $(SCREED)) $(B)/tests/test_file $(ARGS)
 $(B)/tests/test_file: $(call objects,$(wildcard $(TEST)) $(filter-out %_test.cpp,$(UNIT_SOURCES))) $(TESTED) \
   $(B)/link.flags FORCE

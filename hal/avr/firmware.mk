@@ -102,7 +102,8 @@ ARDUINO_FLAGS := -DARDUINO=10819 -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR \
   -DUSB_PRODUCT='"$(BOARD_USB_PRODUCT)"' -I$(ARDUINO_CORE) -I$(ARDUINO_VARIANT)
 
 .PHONY: firmware size firmware-budget firmware-algorithms function-order
-firmware: $(FIRMWARE_BUILD)/screed.hex firmware-budget firmware-algorithms  ## build the image for the robot (BOARD=NAME, a folder in boards/)
+firmware:  ## build the image for the robot (BOARD=NAME, a folder in boards/)
+firmware: $(FIRMWARE_BUILD)/screed.hex firmware-budget firmware-algorithms
 
 # What the analysis cannot see with USB=core: targets of indirect calls. Its "never" lines hold as long as the core's
 # serial line is the only object with virtual functions. The image without the core has neither.
@@ -112,22 +113,26 @@ STACK_OPTIONS_core := --indirect-calls $(INDIRECT_CALLS) --free-word $(BOOT_KEY_
 
 firmware-budget: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(B)/avr_stack
 	@echo "$(FIRMWARE_ELF)"
-	@foreign=$$($(AVR_NM) -C $(FIRMWARE_ELF) | sed -n 's/.*vtable for //p' | { grep -vxF '$(or $(ALLOWED_VTABLES_$(USB)),none)' || [ $$? -eq 1 ] ; }) ; \
-	  [ -z "$$foreign" ] || { echo "$(FIRMWARE_ELF): virtual functions of $$foreign, which the stack analysis does not know" >&2 ; exit 1 ; }
+	@foreign=$$($(AVR_NM) -C $(FIRMWARE_ELF) | sed -n 's/.*vtable for //p' | \
+	  { grep -vxF '$(or $(ALLOWED_VTABLES_$(USB)),none)' || [ $$? -eq 1 ] ; }) ; \
+	  [ -z "$$foreign" ] || \
+	  { echo "$(FIRMWARE_ELF): virtual functions of $$foreign, which the stack analysis does not know" >&2 ; exit 1 ; }
 	@$(B)/avr_stack $(FIRMWARE_BUILD)/screed.lst --sizes $(FIRMWARE_BUILD)/screed.size \
 	  $(STACK_OPTIONS_$(USB)) --flash-budget $(FLASH_BUDGET) --flash-spare $(FLASH_SPARE_$(USB)) \
 	  --ram-budget $(RAM_BUDGET) --ram-spare $(RAM_SPARE)
 
 # The ELF file lists them, a bit each (hal/avr/hal.cpp).
 firmware-algorithms: $(FIRMWARE_ELF)
-	@bits=$$($(AVR_OBJCOPY) -O binary --set-section-flags .screed.algorithms=alloc -j .screed.algorithms $< /dev/stdout | od -An -tu2) ; \
+	@bits=$$($(AVR_OBJCOPY) -O binary --set-section-flags .screed.algorithms=alloc -j .screed.algorithms $< /dev/stdout | \
+	    od -An -tu2) ; \
 	  has="" ; for it in $(ALGORITHM_NUMBERS) ; do [ $$(( bits >> $${it#*=} & 1 )) -eq 0 ] || has="$$has $${it%=*}" ; \
 	  done ; \
 	  echo "leveling algorithms       $${has# }" ; \
 	  case "$$has" in *strokes*) ;; *) echo "  strokes, which levels best, is in the image of LEVELING=strokes" ;; esac
 
 # Bytes of each module; longest tick and interrupts, measured in the simulator while the robot drives.
-size: firmware-budget $(FIRMWARE_ELF) $(B)/avr_cycles  ## flash by modules, RAM, stack, longest tick of that image, their reserve
+size:  ## flash by modules, RAM, stack, longest tick of that image, their reserve
+size: firmware-budget $(FIRMWARE_ELF) $(B)/avr_cycles
 	@tools/avr/modules.sh $(FIRMWARE_ELF)
 	@$(B)/avr_cycles $(FIRMWARE_ELF) boards/$(BOARD)/wiring.ini --budget $(TICK_BUDGET_CYCLES)
 $(B)/avr_cycles: $(B)/tools/avr/cycles/main.o $(LIBRARY) $(B)/link.flags
@@ -189,7 +194,8 @@ $(LINKER_SCRIPT): $(FUNCTION_ORDER) $(FIRMWARE_BUILD)/avr.flags
 	   echo "ASSERT(!DEFINED(__vector_$$number), \"an interrupt handler beyond LAST_VECTOR of hal/avr/firmware.mk\")" ; \
 	   done >> $@
 
-function-order: $(FIRMWARE_ELF) $(FIRMWARE_BUILD)/screed.lst $(B)/avr_order  ## search the order of the image's functions with the fewest long calls
+function-order:  ## search the order of the image's functions with the fewest long calls
+function-order: $(FIRMWARE_ELF) $(FIRMWARE_BUILD)/screed.lst $(B)/avr_order
 	@{ echo "# Sections of the image's functions in the order in which they lie. Made by: make function-order" ; \
 	   $(B)/avr_order $(FIRMWARE_BUILD)/screed.map $(FIRMWARE_BUILD)/screed.lst ; } > $(FUNCTION_ORDER).new
 	@mv $(FUNCTION_ORDER).new $(FUNCTION_ORDER)

@@ -11,7 +11,8 @@ SURROGATE_SESSIONS ?= $(sort $(wildcard host_sim/data/experiments/sessions/v1_*.
   host_sim/data/experiments/sessions/v2_*.ini))
 
 .PHONY: surrogate
-surrogate: $(SCREED)  ## train, evaluate and export the networks of the thesis (MODELS='v1 v2' FRAMES=4000 ARGS='--epochs 2')
+surrogate:  ## train, evaluate and export the networks of the thesis (MODELS='v1 v2' FRAMES=4000 ARGS='--epochs 2')
+surrogate: $(SCREED)
 	@set -e ; for file in $(SURROGATE_SESSIONS) ; do session=$(OUT)/sessions/$$(basename $$file .ini) ; \
 	  ls $$session/session.h5 $$session-[0-9]*/session.h5 > /dev/null 2>&1 || \
 	    $(SCREED) record $$file --out $$session $(if $(FRAMES),--frames $(FRAMES)) ; done
@@ -24,7 +25,8 @@ surrogate: $(SCREED)  ## train, evaluate and export the networks of the thesis (
 	    --markdown > $(OUT)/nn/$$model/evaluation.md ; \
 	  $(SCREED) nn check $(OUT)/nn/$$model/model.json --vectors 100000 ; \
 	  $(SCREED) nn export $(OUT)/nn/$$model/model.json --header $(OUT)/nn/$$model/model.h ; done
-	@{ cat nn/training/results_head.txt ; for model in $(MODELS) ; do cat $(OUT)/nn/$$model/evaluation.md ; echo ; done ; } > $(OUT)/nn/results.md
+	@{ cat nn/training/results_head.txt ; \
+	  for model in $(MODELS) ; do cat $(OUT)/nn/$$model/evaluation.md ; echo ; done ; } > $(OUT)/nn/results.md
 	@echo "tables in $(OUT)/nn/results.md"
 
 # ---- the thesis' sessions alone --------------------------------------------------------------------------------------
@@ -39,7 +41,9 @@ sessions: $(SCREED)  ## record the thesis' training sessions into out/sessions (
 STANDIN := host_sim/data/experiments/sessions/standin/standin
 STANDIN_OUT := $(OUT)/sessions/standin$(if $(FRAMES),-$(FRAMES))
 .PHONY: standin-check
-standin-check: $(SCREED)  ## record drives and judge the stand-in beside them (5 minutes; ROWS='c_*': those of the choice; short: FRAMES=6000)
+standin-check:  ## record drives and judge the stand-in beside them (5 minutes;
+##   ROWS='c_*': those of the choice; short: FRAMES=6000)
+standin-check: $(SCREED)
 	@$(SCREED) record $(STANDIN).ini --table $(STANDIN).csv --rows '$(or $(ROWS),e_*)' --missing --out $(STANDIN_OUT) \
 	   $(if $(FRAMES),--frames $(FRAMES))
 	@for drive in tracks firmware ; \

@@ -48,10 +48,13 @@ until grep -q 'link vcan0 is up' monitor.txt; do sleep 0.2; done
 # foreign.
 for frame in 010#1103000007000000 210#AE03D2040CFE2823 210#AF03D2040CFE2823 7FF#01; do cansend vcan0 $frame; done
 wait $monitor || fail "screed monitor ended with $?"
-grep -q 'attitude: roll 12.34 deg pitch -5.00 deg heading 90.00 deg' monitor.txt || { cat monitor.txt; fail "cansend's frame is not shown"; }
-grep -q '4 frames, 1 damaged, 1 unknown' monitor.txt || { cat monitor.txt; fail "damaged and unknown frames are not counted"; }
+grep -q 'attitude: roll 12.34 deg pitch -5.00 deg heading 90.00 deg' monitor.txt \
+  || { cat monitor.txt; fail "cansend's frame is not shown"; }
+grep -q '4 frames, 1 damaged, 1 unknown' monitor.txt \
+  || { cat monitor.txt; fail "damaged and unknown frames are not counted"; }
 frames monitor.candump | head -n 4 | tr '\n' ' ' > got
-grep -q '^010#1103000007000000 210#AE03D2040CFE2823 210#AF03D2040CFE2823 7FF#01 $' got || { cat got; fail "the monitor's log differs"; }
+grep -q '^010#1103000007000000 210#AE03D2040CFE2823 210#AF03D2040CFE2823 7FF#01 $' got \
+  || { cat got; fail "the monitor's log differs"; }
 pass "screed monitor shows and logs what cansend wrote, and counts what is damaged"
 canplayer -I monitor.candump vcan0=vcan0 || fail "canplayer does not read the monitor's log"
 pass "canplayer plays the monitor's log"
@@ -97,7 +100,8 @@ sleep 3
 before=$(sed -n 's/.*, \([0-9]*\) frames, [0-9]* lost/\1/p' monitor.txt | tail -n 1)
 sleep 3
 after=$(sed -n 's/.*, \([0-9]*\) frames, [0-9]* lost/\1/p' monitor.txt | tail -n 1)
-[ "${after:-0}" -gt "${before:-0}" ] || { cat monitor.txt; fail "no frames after the interface came back ($before, $after)"; }
+[ "${after:-0}" -gt "${before:-0}" ] \
+  || { cat monitor.txt; fail "no frames after the interface came back ($before, $after)"; }
 pass "simulator and monitor go on after the interface was down ($before frames, then $after)"
 # The interface is taken away and made anew.
 ip link del vcan0

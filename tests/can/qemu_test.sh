@@ -28,7 +28,8 @@ fi
 root=$work/root
 rm -rf "$root" && mkdir -p "$root"/{bin,dev,proc,sys,tmp,etc,modules}
 cp "$(command -v busybox)" "$root/bin/"
-programs=("$SCREED_PROGRAM" "$(command -v candump)" "$(command -v cansend)" "$(command -v slcand)" "$(command -v canplayer)")
+programs=("$SCREED_PROGRAM" "$(command -v candump)" "$(command -v cansend)" "$(command -v slcand)" \
+  "$(command -v canplayer)")
 cp "${programs[@]}" "$root/bin/"
 ldd "${programs[@]}" | grep -oE '/[^ :]+\.so[^ :]*' | sort -u | while read -r library; do
   mkdir -p "$root$(dirname "$library")" && cp -L "$library" "$root$library"

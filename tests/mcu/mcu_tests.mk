@@ -32,7 +32,8 @@ $(FIRMWARE_BUILD)/tests/mcu/images/model.o: $(FIRMWARE_BUILD)/generated/models/v
 
 $(B)/tests/mcu.flags: FORCE
 	@mkdir -p $(@D)
-	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"'" | $(WRITE_CHANGED)
+	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' \
+	  -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"'" | $(WRITE_CHANGED)
 
 $(call objects,$(MCU_TEST_SOURCES) $(MCU_LONG_SOURCES)): $(B)/%.o: %.cpp $(B)/host.flags $(B)/tests/mcu.flags | \
   $(GENERATED)

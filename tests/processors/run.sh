@@ -48,7 +48,8 @@ drive() {
 }
 replay() { screed replay "$folder/recorded" 2>&1; }
 campaign() {
-  { screed campaign run "$folder/small.ini" --out "$folder/$way" --quiet && screed campaign merge "$folder/$way"; } > "$folder/log" 2>&1 ||
+  { screed campaign run "$folder/small.ini" --out "$folder/$way" --quiet && screed campaign merge "$folder/$way"; } \
+    > "$folder/log" 2>&1 ||
     { cat "$folder/log"; return 1; }
   sha256sum < "$folder/$way/runs.csv" | cut -c 1-32
   rm -rf "${folder:?}/$way"

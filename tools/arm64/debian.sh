@@ -63,8 +63,10 @@ case $what in
       { cat "$folder/apt/log" >&2; exit 1; }
     tar xf "$folder"/source/ode_*.orig.tar.* -C "$folder/source" --strip-components=1
     cd "$folder/source"
-    { ./configure --host="$1" --prefix="$folder" --enable-double-precision --disable-shared --disable-demos --with-trimesh=none \
-        CFLAGS='-O2 -fPIC -ffp-contract=off' CXXFLAGS='-O2 -fPIC -ffp-contract=off' && make -j"$(nproc)" && make install; } > "$folder/log" 2>&1 ||
+    { ./configure --host="$1" --prefix="$folder" --enable-double-precision --disable-shared --disable-demos \
+      --with-trimesh=none \
+        CFLAGS='-O2 -fPIC -ffp-contract=off' CXXFLAGS='-O2 -fPIC -ffp-contract=off' && make -j"$(nproc)" &&
+        make install; } > "$folder/log" 2>&1 ||
       { tail -n 20 "$folder/log" >&2; exit 1; }
     rm -r "$folder/source" "$folder/apt"
     ;;

@@ -76,7 +76,8 @@ $(ODE_FOLDER)/lib/libode.a: tools/arm64/debian.sh | $(SYSROOT)
 	@touch $@
 $(B)/link.flags: FORCE | $(ODE)
 	@mkdir -p $(@D)
-	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD))) $(if $(ODE),-L$(dir $(ODE)))" ; pkg-config --libs $(PACKAGES) $(LINK_PACKAGES) ; \
+	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD))) $(if $(ODE),-L$(dir $(ODE)))" ; \
+	   pkg-config --libs $(PACKAGES) $(LINK_PACKAGES) ; \
 	   echo "-lpagmo -lboost_serialization -ltbb $(if $(filter yes,$(MCU)),-lsimavr)" ; } | $(WRITE_CHANGED)
 
 # Libraries whose headers are known to single files.
@@ -261,7 +262,8 @@ INSTALLED_FISH := share/fish/vendor_completions.d/screed.fish
 INSTALLED_MAN := share/man/man1
 # One word, since make takes blanks for the ends of names.
 INTO = $(if $(word 2,$(DESTDIR)$(PREFIX)),$(error PREFIX and DESTDIR: no blanks),$(DESTDIR)$(PREFIX))
-install: $(SCREED) $(SCHEMA_HEADERS) $(BUILD_ROOT)/report/page.html  ## install program, data, flash tool and docs (PREFIX=/usr/local)
+install:  ## install program, data, flash tool and docs (PREFIX=/usr/local)
+install: $(SCREED) $(SCHEMA_HEADERS) $(BUILD_ROOT)/report/page.html
 	install -D -m 755 -t $(INTO)/bin $(SCREED)
 	install -D -m 755 tools/flash/flash.py $(INTO)/bin/screed_flash
 	install -D -m 644 tools/flash/60-screed.rules $(INTO)/$(INSTALLED_RULES)

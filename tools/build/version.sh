@@ -17,7 +17,8 @@ git=(git -c safe.directory="$folder")
 commit=unknown
 date=$released
 # An archive that was unpacked inside another repository is not of that repository.
-if [ "$("${git[@]}" rev-parse --show-toplevel 2> /dev/null)" = "$folder" ] && git_date=$("${git[@]}" log -1 --format=%cs 2> /dev/null); then
+if [ "$("${git[@]}" rev-parse --show-toplevel 2> /dev/null)" = "$folder" ] &&
+  git_date=$("${git[@]}" log -1 --format=%cs 2> /dev/null); then
   commit=$("${git[@]}" describe --always --dirty --exclude='*')
   date=$git_date
 elif read -r archived archived_date < tools/build/commit.txt && [[ $archived != *Format* ]]; then

@@ -25,7 +25,8 @@ if ! tsort "$work/edges" > /dev/null 2> "$work/loop"; then
     awk -v one="${loop[i]}" -v other="${loop[(i + 1) % ${#loop[@]}]}" '
       function folder(path) { return sub(/\/[^\/]*$/, "", path) ? path : "." }
       { from = folder($1); to = folder($2) }
-      ((from == one && to == other) || (from == other && to == one)) && !said[from]++ { print "  " $1 " includes " $2 }' "$work/includes"
+      ((from == one && to == other) || (from == other && to == one)) &&
+        !said[from]++ { print "  " $1 " includes " $2 }' "$work/includes"
   done | sort -u
   status=1
 fi

@@ -21,7 +21,9 @@ again[FILENAME] == 1 && FILENAME ~ /^tests\/.*_test\.cpp$/ { next }
 again[FILENAME] == 1 {
   if (/^namespace \{$/) inside = 1
   else if (/^}  \/\/ namespace$/) inside = 0
-  else if (inside && /^[A-Za-z_]/ && !/^using [A-Za-z_0-9:]+;$/ && !/^(namespace|template|static_assert|using namespace|TEST|TEST_[FP]|TYPED_TEST|INSTANTIATE_[A-Z_]+|BENCHMARK[A-Z_]*)[^A-Za-z_0-9]/) {
+  else if (inside && /^[A-Za-z_]/ && !/^using [A-Za-z_0-9:]+;$/ &&
+           !/^(namespace|template|static_assert|using namespace)[^A-Za-z_0-9]/ &&
+           !/^(TEST|TEST_[FP]|TYPED_TEST|INSTANTIATE_[A-Z_]+|BENCHMARK[A-Z_]*)[^A-Za-z_0-9]/) {
     name = declared($0)
     if (name != "" && !((FILENAME, name) in own)) { own[FILENAME, name] = 1; ++files_with[name] }
   }

@@ -22,7 +22,8 @@ tidy() {
 show() {
   touch "$stamp.cpp"
   awk -v pasted="$(basename "$stamp.cpp")" '
-    NR == FNR { if (/^#line /) { at[++count] = FNR; first[count] = $2; file[count] = substr($3, 2, length($3) - 2) } next }
+    NR == FNR { if (/^#line /) { at[++count] = FNR; first[count] = $2; file[count] = substr($3, 2, length($3) - 2) } \
+      next }
     /^[0-9]+ warnings? generated|^Suppressed|^Use -header-filter|^$/ { next }
     match($0, /^[^ :]*:[0-9]+:/) && index($0, pasted ":") {
       split(substr($0, 1, RLENGTH), part, ":")

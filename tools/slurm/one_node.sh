@@ -10,7 +10,8 @@ stop() {
   # Of tasks that still run, the processes that watch them: they hold the port of slurmd.
   local watcher name
   for watcher in $(pgrep slurmstepd || true); do
-    if { tr '\0' '\n' < "/proc/$watcher/environ"; } 2> /dev/null | grep -qxF "SLURM_CONF=$folder/slurm.conf"; then kill -9 "$watcher" || true; fi
+    if { tr '\0' '\n' < "/proc/$watcher/environ"; } 2> /dev/null |
+      grep -qxF "SLURM_CONF=$folder/slurm.conf"; then kill -9 "$watcher" || true; fi
   done
   local pid
   for name in slurmd slurmctld munged; do
@@ -67,7 +68,8 @@ CONF
   slurmctld -D -i > "$folder/slurmctld.out" 2>&1 &
   slurmd -D > "$folder/slurmd.out" 2>&1 &
   for _ in $(seq 150); do
-    timeout 5 sinfo --noheader --format=%t 2> /dev/null | grep -q '^idle$' && { echo "export SLURM_CONF=$SLURM_CONF"; return; }
+    timeout 5 sinfo --noheader --format=%t 2> /dev/null |
+      grep -q '^idle$' && { echo "export SLURM_CONF=$SLURM_CONF"; return; }
     sleep 0.2
   done
   echo "$0: no idle node; see $folder/slurmctld.log and slurmd.log" >&2

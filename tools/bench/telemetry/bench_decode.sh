@@ -34,6 +34,7 @@ command -v tshark > /dev/null || { echo "tshark is not installed: apt install ts
 mkdir -p "$folder/config/profiles"
 cp -r "$profile" "$folder/config/profiles/screed"
 export WIRESHARK_CONFIG_DIR=$folder/config
-measure "tshark, 3 signals" 1 tshark -C screed -r "$folder/radio.log" -T fields -e frame.time_epoch -e signal_pdu.attitude.roll \
+measure "tshark, 3 signals" 1 tshark -C screed -r "$folder/radio.log" -T fields -e frame.time_epoch \
+  -e signal_pdu.attitude.roll \
   -e signal_pdu.attitude.pitch -e signal_pdu.attitude.heading
 [ "$(wc -l < "$folder/out")" -eq "$frames" ]
