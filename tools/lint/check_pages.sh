@@ -17,9 +17,12 @@ each_in algorithms.md '^\| `' '` \|' < <(sed -nE 's/^VAL_ [0-9]+ algorithm //p' 
 each_in boards.md '^\| (`.`, )?`' '([lr]|\.\.\.)?`' < <(grep -oP "(command == |case )'\K\w" hal/avr/console.cpp)
 each_in sessions.md '`/?([a-z]+/)?' '\b' < <(
   grep -oP '^inline constexpr char k\w+\[\] = "\K\w+(?=";)' host_sim/run/session/session_layout.h)
-# Examples that a reader adds are left out, and names in capitals that stand for others.
-path='(firmware|hal|host_sim|nn|tools|tests|boards)/[\w./-]+\.(h|cpp|mk|sh|py|awk|txt|ini|urdf|dbc|S)'
+# Files, by their path or by its end. Examples that a reader adds are left out, and names in capitals.
+files=$(git ls-files)
 while IFS=: read -r page file; do
-  [ -e "$file" ] || { echo "$page: no file $file" >&2; status=1; }
-done < <(grep -oHP "\`\K$path(?=\`)" README.md docs/*.md | grep -vE '^docs/(tutorial|extending)|:boards/[A-Z]+/')
+  grep -qE "(^|/)${file//./\\.}$" <<< "$files" && continue
+  echo "$page: no file $file" >&2
+  status=1
+done < <(grep -oHP '`\K[\w./-]+\.(h|cpp|mk|sh|py|awk|S)(?=`)' README.md docs/*.md |
+  grep -vE '^docs/(tutorial|extending)|[A-Z]{4}' | sort -u)
 exit $status
