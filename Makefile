@@ -1,7 +1,7 @@
 # Screed: every entry point. `make help` prints them from the rules: a target with a comment behind two hashes is one.
 #
-# The first make installs missing packages (DEPS=no switches that off) and calls a second one, which does the work: its rules may
-# use what has just been installed. Everything is built under build/, results go to out/.
+# The first make installs missing packages (DEPS=no switches that off) and calls a second one, which does the work: its
+# rules may use what has just been installed. Everything is built under build/, results go to out/.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -o pipefail -ec
@@ -12,15 +12,17 @@ MAKEFLAGS += --no-builtin-rules
 
 DEPS ?= yes
 # Lists of Debian packages: what everything needs, and what single targets need beside it.
-PACKAGE_LISTS := tools/debian-packages.txt $(if $(filter fuzz test-asan,$(MAKECMDGOALS))$(filter asan,$(BUILD)),tests/fuzz/debian-packages.txt) \
-                 $(if $(filter arm64,$(BUILD))$(filter test-portable test-processors,$(MAKECMDGOALS)),tools/arm64/debian-packages.txt) \
-                 $(if $(filter test-can,$(MAKECMDGOALS)),tests/can/debian-packages.txt) \
-                 $(if $(filter test-slurm,$(MAKECMDGOALS)),tests/slurm/debian-packages.txt) \
-                 $(if $(filter test-python,$(MAKECMDGOALS)),tests/python/debian-packages.txt) \
-                 $(if $(filter test-report,$(MAKECMDGOALS)),tests/report/debian-packages.txt) \
-                 $(if $(filter camera test-camera,$(MAKECMDGOALS)),tools/camera/debian-packages.txt) \
-                 $(if $(shell command -v npm),,$(if $(filter build report-page install test-install test-report,$(MAKECMDGOALS)),tools/report/debian-packages.txt))
-BUILD_FILES := Makefile $(sort $(wildcard tools/build/*.mk hal/avr/*.mk nn/*/*.mk tests/*.mk tests/*/*.mk tools/*/*.mk tools/*/*/*.mk))
+# $(call packages_for,TARGETS,FOLDER): the list of that folder where one of the targets is asked for.
+packages_for = $(if $(filter $(1),$(MAKECMDGOALS)),$(2)/debian-packages.txt)
+PACKAGE_LISTS := tools/debian-packages.txt \
+  $(or $(call packages_for,fuzz test-asan,tests/fuzz),$(if $(filter asan,$(BUILD)),tests/fuzz/debian-packages.txt)) \
+  $(or $(call packages_for,test-portable test-processors,tools/arm64),$(if \
+    $(filter arm64,$(BUILD)),tools/arm64/debian-packages.txt)) \
+  $(call packages_for,test-can,tests/can) $(call packages_for,test-slurm,tests/slurm) \
+  $(call packages_for,test-python,tests/python) $(call packages_for,test-report,tests/report) \
+  $(call packages_for,camera test-camera,tools/camera) \
+  $(if $(shell command -v npm),,$(call packages_for,build report-page install test-install test-report,tools/report))
+BUILD_FILES := Makefile $(sort $(wildcard $(addsuffix /*.mk,tools/build hal/avr nn/* tests tests/* tools/* tools/*/*)))
 
 .PHONY: help deps clean
 help:  ## print this list
@@ -31,16 +33,17 @@ clean:  ## remove build/ (results in out/ stay)
 	rm -rf build
 
 ifndef INSTALLED
-# ---- the first make ----------------------------------------------------------------------------------------------------------
+# ---- the first make --------------------------------------------------------------------------------------------------
 # `lint` goes on after a finding, to show all of them.
 WORK := $(filter-out help deps clean,$(MAKECMDGOALS))
 .PHONY: work $(WORK)
 $(WORK): work
 	@:
 work: deps
-	+@$(MAKE) --no-print-directory $(if $(filter 0,$(MAKELEVEL)),$(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc))) $(if $(filter lint,$(WORK)),-k) INSTALLED=yes $(WORK)
+	+@$(MAKE) --no-print-directory $(if $(filter 0,$(MAKELEVEL)),$(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc))) \
+	  $(if $(filter lint,$(WORK)),-k) INSTALLED=yes $(WORK)
 else
-# ---- the second make: the rules of each part -----------------------------------------------------------------------------------
+# ---- the second make: the rules of each part -------------------------------------------------------------------------
 include tools/build/options.mk
 include tools/schema/schema.mk
 include tools/build/host.mk

@@ -2,19 +2,21 @@
 # run.sh PROGRAM...: runs the tests of GoogleTest programs, as many at a time as there are processors, and ends with
 # "N passed, N failed".
 #
-# One queue holds the tests of all programs, the longest first: those of half a second and more alone, the others in batches of about a
-# second, since a program takes longer to start than most tests to run. How long tests take is known from earlier runs of the same
-# programs, if there were any. A program that dies counts as a failed test; its output is shown. With CI=true a skipped test counts as
-# failed.
+# One queue holds the tests of all programs, the longest first: those of half a second and more alone, the others in
+# batches of about a second, since a program takes longer to start than most tests to run. How long tests take is known
+# from earlier runs of the same programs, if there were any. A program that dies counts as a failed test; its output is
+# shown. With CI=true a skipped test counts as failed.
 set -uo pipefail
 
-# run_tests PROGRAM NAME:NAME...: prints a line a test to descriptor 3, "passed|failed|skipped MILLISECONDS PROGRAM NAME".
+# run_tests PROGRAM NAME:NAME...: prints a line a test to descriptor 3, "passed|failed|skipped MILLISECONDS PROGRAM
+# NAME".
 run_tests() {
   local program=$1 names=$2 status=0 lines
   "$program" --gtest_brief=1 --gtest_filter="$names" --gtest_output="xml:$mine.xml" > "$mine.log" 2>&1 || status=$?
   if [ -s "$mine.xml" ]; then
     lines=$(awk -v program="$program" '
-      function value(attribute) { match($0, " " attribute "=\"[^\"]*\""); return substr($0, RSTART + length(attribute) + 3, RLENGTH - length(attribute) - 4) }
+      function value(attribute) { match($0, " " attribute "=\"[^\"]*\"");
+        return substr($0, RSTART + length(attribute) + 3, RLENGTH - length(attribute) - 4) }
       function finish() { if (test != "") print verdict, time, program, test; test = "" }
       /^    <testcase / { finish(); test = value("classname") "." value("name"); time = int(1000 * value("time") + 0.5)
                           verdict = value("result") == "skipped" ? "skipped" : "passed" }
@@ -56,7 +58,8 @@ touch "$times"
 
 for program in "$@"; do
   # A parameter's value stands behind the name.
-  "$program" --gtest_list_tests | awk -v program="$program" '/^[^ ]/ { suite = $1; next } { print program, suite $1; found = 1 }
+  "$program" --gtest_list_tests |
+    awk -v program="$program" '/^[^ ]/ { suite = $1; next } { print program, suite $1; found = 1 }
     END { exit !found }' || echo "$program no_tests_found"
 done > "$folder/tests"
 
@@ -76,9 +79,12 @@ awk -v times="$times" '
   xargs -r -d '\n' -n 1 -P "$(nproc)" "$0" --batch "$folder"
 
 cat "$folder"/*.results 2> /dev/null > "$folder/results"
-awk 'FILENAME ~ /results$/ { seen[$3 " " $4] = 1; next } !($0 in seen) { print "failed 0 " $0 }' "$folder/results" "$folder/tests" > "$folder/missing"
-[ -s "$folder/missing" ] && cut -d' ' -f3- "$folder/missing" | sed 's/$/: no result/' && cat "$folder/missing" >> "$folder/results"
-cut -d' ' -f2- "$folder/results" | cat - "$times" | awk '!seen[$2 " " $3]++' > "$folder/times" && cp "$folder/times" "$times"
+awk 'FILENAME ~ /results$/ { seen[$3 " " $4] = 1; next } !($0 in seen) { print "failed 0 " $0 }' "$folder/results" \
+  "$folder/tests" > "$folder/missing"
+[ -s "$folder/missing" ] && cut -d' ' -f3- "$folder/missing" | sed 's/$/: no result/' &&
+  cat "$folder/missing" >> "$folder/results"
+cut -d' ' -f2- "$folder/results" | cat - "$times" | awk '!seen[$2 " " $3]++' > "$folder/times" &&
+  cp "$folder/times" "$times"
 echo "The longest:"
 sort -k2,2rn "$folder/results" | head -10 | awk '{ printf "%8.1f s  %s\n", $2 / 1000, $4 }'
 

@@ -1,8 +1,9 @@
-# Unit tests, software-in-the-loop tests, tests of the microcontroller's images, and the long ones of all these. Included by the top
-# Makefile after the parts whose tests it runs; parts with tests of their own add to TESTS and TEST_IMAGES, or to what `test` needs.
+# Unit tests, software-in-the-loop tests, tests of the microcontroller's images, and the long ones of all these.
+# Included by the top Makefile after the parts whose tests it runs; parts with tests of their own add to TESTS and
+# TEST_IMAGES, or to what `test` needs.
 #
-# tests/unit mirrors the folders of the sources. A test of more than two seconds lies in tests/long, whose program `make test` neither
-# compiles nor links.
+# tests/unit mirrors the folders of the sources. A test of more than two seconds lies in tests/long, whose program `make
+# test` neither compiles nor links.
 
 UNIT_SOURCES := $(call sources,tests/unit)
 SITL_SOURCES := $(call sources,tests/sitl)
@@ -12,7 +13,7 @@ LAB_LIBRARY_SOURCES := $(filter-out tools/bench/telemetry/main.cpp,$(call source
 TESTS := $(B)/tests/unit_tests $(B)/tests/sitl_tests
 LONG_TESTS := $(B)/tests/long_tests
 
-# ---- programs ----------------------------------------------------------------------------------------------------------------
+# ---- programs --------------------------------------------------------------------------------------------------------
 
 $(eval $(call in_groups,UNIT,$(UNIT_SOURCES),test))
 $(eval $(call in_groups,SITL,$(SITL_SOURCES),test))
@@ -22,11 +23,12 @@ include tests/mcu/mcu_tests.mk
 endif
 
 TEST_LIBRARIES = $$(pkg-config --libs $(TEST_PACKAGES))
-# The library stands first, and whole: tests are compiled without optimising, and of an inline function that both have compiled the linker
-# takes the first it meets.
+# The library stands first, and whole: tests are compiled without optimising, and of an inline function that both have
+# compiled the linker takes the first it meets.
 define link_tests
 	@echo "  LINK $@"
-	@$(CXX) -Wl,--whole-archive $(LIBRARY) -Wl,--no-whole-archive $(filter-out $(LIBRARY),$(filter %.o %.a,$^)) -Wl,--as-needed \
+	@$(CXX) -Wl,--whole-archive $(LIBRARY) -Wl,--no-whole-archive $(filter-out $(LIBRARY),$(filter %.o %.a,$^)) \
+	  -Wl,--as-needed \
 	  @$(B)/link.flags $(TEST_LIBRARIES) -o $@
 	$(call runnable,$@)
 endef
@@ -40,21 +42,27 @@ $(LONG_TESTS): $(LONG_OBJECTS) $(MCU_LONG_PARTS) $(TESTED) $(B)/link.flags
 	$(call link_tests)
 
 # Every host source that is compiled with the host's flags or the firmware's: what lint and clangd look at.
-ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp $(call sources,tools/avr tools/schema tools/bench tools/mutants tests/unit tests/sitl tests/portable) $(LONG_SOURCES)
+ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp \
+  $(call sources,tools/avr tools/schema tools/bench tools/mutants tests/unit tests/sitl tests/portable) $(LONG_SOURCES)
 
 # Expanded twice: later parts add their tests.
 .SECONDEXPANSION:
 .PHONY: test test-long
-test: $(SCREED) $$(TESTS) $$(TEST_IMAGES)  ## build and run the tests that take seconds (BUILD=asan: under the sanitizers)
+test:  ## build and run the tests that take seconds (BUILD=asan: under the sanitizers)
+test: $(SCREED) $$(TESTS) $$(TEST_IMAGES)
 	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/run.sh $(TESTS)
-test-long: $(SCREED) $(LONG_TESTS) $$(TEST_IMAGES)  ## build and run those that take longer: long drives, whole runs, minutes of the microcontroller
+test-long:  ## build and run those that take longer: long drives, whole runs, minutes of the microcontroller
+test-long: $(SCREED) $(LONG_TESTS) $$(TEST_IMAGES)
 	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/run.sh $(LONG_TESTS)
 
-# The tests of single sources: quick to build, for whoever works on them. Which ones, no date of a file says: linked each time.
+# The tests of single sources: quick to build, for whoever works on them. Which ones, no date of a file says: linked
+# each time.
 .PHONY: test-file test-tutorial
-test-file: $(SCREED) $(B)/tests/test_file  ## build and run single tests (TEST='tests/unit/firmware/leveling/*_test.cpp')
+test-file:  ## build and run single tests (TEST='tests/unit/firmware/leveling/*_test.cpp')
+test-file: $(SCREED) $(B)/tests/test_file
 	@SCREED_PROGRAM=$(abspath $(SCREED)) $(B)/tests/test_file $(ARGS)
-$(B)/tests/test_file: $(call objects,$(wildcard $(TEST)) $(filter-out %_test.cpp,$(UNIT_SOURCES))) $(TESTED) $(B)/link.flags FORCE
+$(B)/tests/test_file: $(call objects,$(wildcard $(TEST)) $(filter-out %_test.cpp,$(UNIT_SOURCES))) $(TESTED) \
+  $(B)/link.flags FORCE
 	$(if $(wildcard $(TEST)),,$(error TEST='FILE...' names sources of tests; there is none of the name '$(TEST)'))
 	$(call link_tests)
 test-tutorial: $(SCREED)  ## the commands of docs/tutorial.md, from top to bottom, in a copy of the tree

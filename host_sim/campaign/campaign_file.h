@@ -1,8 +1,8 @@
 // A campaign: one experiment, run many times with other values and seeds, as read from an INI file.
 //
 // Reading is strict as that of experiments is: whatever is unknown or not allowed ends with one
-// line that names file, line, key and what is allowed. docs/campaigns.md lists the keys; the list
-// is made from the same table.
+// line that names file, line, key and what is allowed. `screed campaign plan --keys` lists the
+// keys, from the same table.
 #pragma once
 
 #include <cstdint>

@@ -33,7 +33,8 @@
   X(last_tick_us,   last_tick_us,   "us",           "computation time of the previous tick") \
   X(encoder_errors, encoder_errors, "count",        "missed quadrature edges, wraps") \
   X(fresh,          fresh,          "",             "devices with a new measurement: 1 gyro, 2 accel, 4 mag, 8 baro") \
-  X(chips_failing,  chips_failing,  "",             "chips that do not answer or lost their settings: 1 LSM303D, 2 L3GD20H, 4 LPS25H") \
+  X(chips_failing,  chips_failing,  "", \
+    "chips that do not answer or lost their settings: 1 LSM303D, 2 L3GD20H, 4 LPS25H") \
   X(bus_errors,     bus_errors,     "count",        "I2C transfers that failed, wraps") \
   X(radio_errors,   radio_errors,   "byte",         "received bytes that were lost, wraps") \
   X(reset_cause,    reset_cause,    "",             "why the program started, 0: power-on") \

@@ -35,7 +35,8 @@
   X(double,   track_right,    "m/s",    "speed of the right track over its wheels") \
   X(double,   slip_left,      "1",      "longitudinal slip of the left track, (track - ground) / max of both, -1..1") \
   X(double,   slip_right,     "1",      "longitudinal slip of the right track") \
-  X(double,   sinkage_left,   "m",      "depth of the left running gear below the undisturbed soil, 0 on rigid ground") \
+  X(double,   sinkage_left,   "m", \
+    "depth of the left running gear below the undisturbed soil, 0 on rigid ground") \
   X(double,   sinkage_right,  "m",      "depth of the right running gear") \
   X(double,   load_left,      "N",      "what the left running gear carries, vertically") \
   X(double,   load_right,     "N",      "what the right running gear carries") \
@@ -51,7 +52,8 @@
   X(int32_t,  state,          "",       "supervisor state (firmware/robot/supervisor.h)") \
   X(int32_t,  leveling_state, "",       "state of the leveling algorithm (firmware/leveling/leveling.h)") \
   X(int32_t,  faults,         "",       "latched fault bits (firmware/robot/supervisor.h)") \
-  X(int32_t,  beds_x,         "",       "beds that the robot has crossed eastwards: unwrapped x is x plus this times the bed's width") \
+  X(int32_t,  beds_x,         "", \
+    "beds that the robot has crossed eastwards: unwrapped x is x plus this times the bed's width") \
   X(int32_t,  beds_y,         "",       "beds that the robot has crossed northwards")
 // clang-format on
 

@@ -16,7 +16,8 @@
 #define SCREED_LEVELING_COLUMNS(X) \
   X(time,                 "s",        "simulated time") \
   X(level_deviation,            "m",        "U: RMS of the heights about level, after a Gaussian low-pass of 50 mm") \
-  X(relief,               "m",        "R: RMS of the heights above their mean plane, after a Gaussian low-pass of 50 mm") \
+  X(relief,               "m", \
+    "R: RMS of the heights above their mean plane, after a Gaussian low-pass of 50 mm") \
   X(roughness,            "m",        "Q: RMS of what the low-pass takes away") \
   X(robot_scale_flatness, "1",        "F: share of cells whose slope after the low-pass is within the limit") \
   X(flatness,             "1",        "share of cells whose slope is within the limit (thesis 4.1)") \

@@ -27,7 +27,7 @@ touch monitor.txt
 # Lines of a candump log without time and interface.
 frames() { sed -n 's/^([0-9.]*) [^ ]* //p' "$1"; }
 
-# --- the simulator's frames on vcan, as candump sees them -----------------------------------------------------------------------
+# --- the simulator's frames on vcan, as candump sees them -------------------------------------------------------------
 candump -r 4194304 -d -L vcan0 > sim.candump &
 dump=$!
 sleep 1
@@ -40,22 +40,27 @@ frames sim.candump > got
 cmp expected got || fail "candump has $(wc -l < got) frames, the simulator's log $(wc -l < expected)"
 pass "candump saw all $(wc -l < got) frames of a simulated robot"
 
-# --- screed monitor reads what cansend wrote -------------------------------------------------------------------------------------
+# --- screed monitor reads what cansend wrote --------------------------------------------------------------------------
 screed monitor --can vcan0 --listen --plain --duration 5 --log monitor.candump > monitor.txt &
 monitor=$!
 until grep -q 'link vcan0 is up' monitor.txt; do sleep 0.2; done
-# A heartbeat, and an attitude of 12.34, -5 and 90 degrees, with their checksums; the same with one wrong bit; something foreign.
+# A heartbeat, and an attitude of 12.34, -5 and 90 degrees, with their checksums; the same with one wrong bit; something
+# foreign.
 for frame in 010#1103000007000000 210#AE03D2040CFE2823 210#AF03D2040CFE2823 7FF#01; do cansend vcan0 $frame; done
 wait $monitor || fail "screed monitor ended with $?"
-grep -q 'attitude: roll 12.34 deg pitch -5.00 deg heading 90.00 deg' monitor.txt || { cat monitor.txt; fail "cansend's frame is not shown"; }
-grep -q '4 frames, 1 damaged, 1 unknown' monitor.txt || { cat monitor.txt; fail "damaged and unknown frames are not counted"; }
+grep -q 'attitude: roll 12.34 deg pitch -5.00 deg heading 90.00 deg' monitor.txt \
+  || { cat monitor.txt; fail "cansend's frame is not shown"; }
+grep -q '4 frames, 1 damaged, 1 unknown' monitor.txt \
+  || { cat monitor.txt; fail "damaged and unknown frames are not counted"; }
 frames monitor.candump | head -n 4 | tr '\n' ' ' > got
-grep -q '^010#1103000007000000 210#AE03D2040CFE2823 210#AF03D2040CFE2823 7FF#01 $' got || { cat got; fail "the monitor's log differs"; }
+grep -q '^010#1103000007000000 210#AE03D2040CFE2823 210#AF03D2040CFE2823 7FF#01 $' got \
+  || { cat got; fail "the monitor's log differs"; }
 pass "screed monitor shows and logs what cansend wrote, and counts what is damaged"
 canplayer -I monitor.candump vcan0=vcan0 || fail "canplayer does not read the monitor's log"
 pass "canplayer plays the monitor's log"
 
-# --- a controller goes bus off and restarts: error frames as its driver writes them, since vcan has no errors of its own ------------
+# --- a controller goes bus off and restarts: error frames as its driver writes them, since vcan has no errors of its
+# own ------------
 shown() { # text, times
   for attempt in $(seq 60); do
     [ "$(grep -c "$1" monitor.txt)" -ge "$2" ] && return
@@ -81,7 +86,7 @@ kill -INT $monitor
 wait $monitor
 pass "screed monitor tells of bus off, of the restart, and of an interface that was set up anew by hand"
 
-# --- the interface goes down and up under simulator and monitor ------------------------------------------------------------------
+# --- the interface goes down and up under simulator and monitor -------------------------------------------------------
 screed sim first_drive --can vcan0 --duration 90 --out /tmp/run2 --quiet > /dev/null &
 sim=$!
 screed monitor --can vcan0 --plain --listen --duration 35 > monitor.txt &
@@ -95,7 +100,8 @@ sleep 3
 before=$(sed -n 's/.*, \([0-9]*\) frames, [0-9]* lost/\1/p' monitor.txt | tail -n 1)
 sleep 3
 after=$(sed -n 's/.*, \([0-9]*\) frames, [0-9]* lost/\1/p' monitor.txt | tail -n 1)
-[ "${after:-0}" -gt "${before:-0}" ] || { cat monitor.txt; fail "no frames after the interface came back ($before, $after)"; }
+[ "${after:-0}" -gt "${before:-0}" ] \
+  || { cat monitor.txt; fail "no frames after the interface came back ($before, $after)"; }
 pass "simulator and monitor go on after the interface was down ($before frames, then $after)"
 # The interface is taken away and made anew.
 ip link del vcan0
@@ -108,7 +114,7 @@ again=$(sed -n 's/.*, \([0-9]*\) frames, [0-9]* lost/\1/p' monitor.txt | tail -n
 [ "$again" -gt "$after" ] || { cat monitor.txt; fail "no frames after the interface was made anew ($after, $again)"; }
 pass "and after it was taken away and made anew ($again)"
 
-# --- screed param and send, and the robot's answer --------------------------------------------------------------------------------
+# --- screed param and send, and the robot's answer --------------------------------------------------------------------
 screed param get --can vcan0 climb_speed > sent.txt || { cat sent.txt; fail "screed param get: $?"; }
 grep -q 'climb_speed = 200 mm/s' sent.txt || { cat sent.txt; fail "wrong parameter"; }
 screed send --can vcan0 disarm > sent.txt || { cat sent.txt; fail "screed send disarm failed"; }
@@ -125,7 +131,7 @@ pass "screed param and send: a parameter read and written, an emergency stop, an
 kill -INT $monitor $sim
 wait $monitor $sim
 
-# --- slcand makes the virtual serial port a CAN interface -------------------------------------------------------------------------
+# --- slcand makes the virtual serial port a CAN interface -------------------------------------------------------------
 screed sim first_drive --pty /dev/radio --duration 20 --out /tmp/run3 --quiet > /dev/null &
 sim=$!
 while [ ! -e /dev/radio ]; do sleep 0.2; done
@@ -143,8 +149,9 @@ grep -q "^010#....80" got || { tail -n 3 got; fail "the emergency stop of cansen
 pass "slcand: $(wc -l < got) frames, and cansend stops the robot"
 kill $sim
 wait $sim
-# Whatever slcand brought, the simulator's ground station has in its log, in that order, but for frames that change places with the one
-# to three before them: the kernel's slcan hands frames to the network layer on whichever processor is free.
+# Whatever slcand brought, the simulator's ground station has in its log, in that order, but for frames that change
+# places with the one to three before them: the kernel's slcan hands frames to the network layer on whichever processor
+# is free.
 frames run3/telemetry.log > expected
 grep -v '^001#' got > checked
 awk 'NR == FNR { log_line[n++] = $0; next }

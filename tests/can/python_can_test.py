@@ -1,4 +1,5 @@
-"""python-can's own SLCAN interface at the virtual serial port of a simulated robot: frames come at their rates, and an emergency stop
+"""python-can's own SLCAN interface at the virtual serial port of a simulated robot: frames come at their rates,
+and an emergency stop
 written through it stops the robot. Usage: python_can_test.py PORT"""
 import sys
 import time

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Real SocketCAN: Debian's kernel under QEMU, since the build machine's kernel need not have CAN. tests/can/guest.sh runs inside as the
-# first process. The guest's verdict is QEMU's exit code: only a pass writes the pass value to the debug exit port (a kernel that
-# panics makes QEMU end with 0).
+# Real SocketCAN: Debian's kernel under QEMU, since the build machine's kernel need not have CAN. tests/can/guest.sh
+# runs inside as the first process. The guest's verdict is QEMU's exit code: only a pass writes the pass value to the
+# debug exit port (a kernel that panics makes QEMU end with 0).
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -28,7 +28,8 @@ fi
 root=$work/root
 rm -rf "$root" && mkdir -p "$root"/{bin,dev,proc,sys,tmp,etc,modules}
 cp "$(command -v busybox)" "$root/bin/"
-programs=("$SCREED_PROGRAM" "$(command -v candump)" "$(command -v cansend)" "$(command -v slcand)" "$(command -v canplayer)")
+programs=("$SCREED_PROGRAM" "$(command -v candump)" "$(command -v cansend)" "$(command -v slcand)" \
+  "$(command -v canplayer)")
 cp "${programs[@]}" "$root/bin/"
 ldd "${programs[@]}" | grep -oE '/[^ :]+\.so[^ :]*' | sort -u | while read -r library; do
   mkdir -p "$root$(dirname "$library")" && cp -L "$library" "$root$library"

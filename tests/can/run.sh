@@ -1,6 +1,7 @@
 #!/bin/bash
-# Runs every *_test.sh of this folder and ends with "N passed, N failed". A test ends with 0: passed, 77: skipped, after one line that
-# says why; anything else: failed, and its output is shown. With CI=true nothing may be skipped: a missing tool is a failure.
+# Runs every *_test.sh of this folder and ends with "N passed, N failed". A test ends with 0: passed, 77: skipped, after
+# one line that says why; anything else: failed, and its output is shown. With CI=true nothing may be skipped: a missing
+# tool is a failure.
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -1,6 +1,6 @@
 #!/bin/bash
-# tshark, with the tables that the schema compiler makes for it, reads every signal of a log as `screed decode` does: random messages of
-# three robots and of the ground, edges among them.
+# tshark, with the tables that the schema compiler makes for it, reads every signal of a log as `screed decode` does:
+# random messages of three robots and of the ground, edges among them.
 set -euo pipefail
 
 cd "$(dirname "$0")/../.."
@@ -27,7 +27,8 @@ for table in "$folder"/ours/*.csv; do
   IFS=, read -ra columns <<< "$(head -n 1 "$table" | sed 's/ \[[^]]*\]//g')"
   for signal in "${columns[@]:2}"; do fields+=(-e "signal_pdu.$message.$signal"); done
   # A broken table of the profile would be said on standard error, an unknown field as well.
-  tshark -C screed -r "$folder/radio.log" -Y "signal_pdu.name == \"${message^^}\"" -T fields -E separator=, "${fields[@]}" \
+  tshark -C screed -r "$folder/radio.log" -Y "signal_pdu.name == \"${message^^}\"" -T fields -E separator=, \
+    "${fields[@]}" \
     > "$folder/theirs.csv" 2> "$folder/said" || { echo "tshark ended with $?:" ; cat "$folder/said" ; exit 1 ; }
   if grep -vi 'running as user "root"' "$folder/said" | grep -q .; then cat "$folder/said" ; exit 1 ; fi
   awk -F, -v message="$message" -v names="$(head -n 1 "$table")" '
@@ -37,7 +38,8 @@ for table in "$folder"/ours/*.csv; do
     {
       split(ours[FNR], our, ",")
       node = int($2 / 16) % 16
-      if (differs(our[1], $1) || our[2] != node) { print message ", row " FNR ": other frames: " ours[FNR] " / " $0; exit failed = 1 }
+      if (differs(our[1], $1) || our[2] != node) { print message ", row " FNR ": other frames: " ours[FNR] " / " $0;
+        exit failed = 1 }
       for (i = 3; i <= NF; ++i) if (differs(our[i], $i)) {
         print message "." name[i] ", row " FNR ": " our[i] " of ours, " $i " of tshark"; exit failed = 1
       }

@@ -1,7 +1,8 @@
 #!/bin/bash
-# tutorial.sh PAGE: runs the blocks ```sh of a Markdown page, from top to bottom, in one shell and in a copy of the tree, as a reader would.
-# What is built already is copied along, so only what the page changes is compiled. Ends with 1 at the first command that fails, with its
-# line in the page.
+# tutorial.sh PAGE: runs the blocks ```sh of a Markdown page, from top to bottom, in one shell and in a copy of the
+# tree, as a reader would.
+# What is built already is copied along, so only what the page changes is compiled. Ends with 1 at the first command
+# that fails, with its line in the page.
 set -euo pipefail
 page=$1
 # The page's make commands are a user's: they stand in no other make.
@@ -21,7 +22,8 @@ for built in build/generated build/schema build/report build/firmware build/rele
 done
 
 # Each line of the page becomes a line of the script, so that line numbers are the same.
-awk '/^```/ { in_block = !in_block && $0 == "```sh"; print ""; next } { print in_block ? $0 : "" }' "$page" > "$folder/commands.sh"
+awk '/^```/ { in_block = !in_block && $0 == "```sh"; print ""; next } { print in_block ? $0 : "" }' "$page" \
+  > "$folder/commands.sh"
 grep -q . "$folder/commands.sh" || { echo "$page has no commands" >&2; exit 1; }
 cat > "$folder/main.sh" <<'END'
 set -eE
@@ -30,7 +32,8 @@ END
 sed -i "s|PAGE|$page|" "$folder/main.sh"
 cd "$folder/screed"
 # Sourced, so that LINENO counts the page's lines. No display: windows have no place in it.
-if env -u DISPLAY -u WAYLAND_DISPLAY DEPS=no bash -c 'set -m; . "$0"; . "$1"' "$folder/main.sh" "$folder/commands.sh" > "$folder/log" 2>&1 < /dev/null; then
+if env -u DISPLAY -u WAYLAND_DISPLAY DEPS=no bash -c 'set -m; . "$0"; . "$1"' "$folder/main.sh" "$folder/commands.sh" \
+  > "$folder/log" 2>&1 < /dev/null; then
   echo "$page: $(grep -c . "$folder/commands.sh") lines of commands ran"
 else
   tail -60 "$folder/log"

@@ -1,7 +1,9 @@
-# Fuzzing of everything that reads bytes from outside, by clang's libFuzzer under ASan and UBSan. Included by the top Makefile.
+# Fuzzing of everything that reads bytes from outside, by clang's libFuzzer under ASan and UBSan. Included by the top
+# Makefile.
 #
-# Every tests/fuzz/*_fuzz.cpp is a target. It starts from tests/fuzz/corpus/<target>; what it finds on the way stays in build/fuzz/corpus. An input that breaks a target is kept
-# as build/fuzz/<target>-crash-... (or -timeout-, -oom-), and the run fails.
+# Every tests/fuzz/*_fuzz.cpp is a target. It starts from tests/fuzz/corpus/<target>; what it finds on the way stays in
+# build/fuzz/corpus. An input that breaks a target is kept as build/fuzz/<target>-crash-... (or -timeout-, -oom-), and
+# the run fails.
 #
 # Needs schema.mk and tests/tests.mk.
 
@@ -10,8 +12,10 @@ FUZZ_CXX ?= clang++
 FUZZ_BUILD := $(BUILD_ROOT)/fuzz
 FUZZ_TARGETS := $(patsubst tests/fuzz/%.cpp,%,$(wildcard tests/fuzz/*_fuzz.cpp))
 FUZZ_PROGRAMS := $(FUZZ_TARGETS:%=$(FUZZ_BUILD)/%)
-FUZZ_LIBRARY_SOURCES := firmware/protocol/slcan.cpp firmware/protocol/e2e.cpp host_sim/ground_station/link/xbee_api.cpp \
-  $(addprefix host_sim/ground_station/telemetry/,schema.cpp candump_line.cpp candump_log.cpp) $(SCHEMA_LIBRARY_SOURCES)
+FUZZ_LIBRARY_SOURCES := firmware/protocol/slcan.cpp firmware/protocol/e2e.cpp \
+  host_sim/ground_station/link/xbee_api.cpp \
+  $(addprefix host_sim/ground_station/telemetry/,schema.cpp candump_line.cpp candump_log.cpp) \
+  $(SCHEMA_LIBRARY_SOURCES)
 FUZZ_LIBRARY_OBJECTS := $(FUZZ_LIBRARY_SOURCES:%.cpp=$(FUZZ_BUILD)/%.o)
 FUZZ_FLAGS := -std=c++20 -O2 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer \
   -I. -I$(GENERATED_FOLDER)

@@ -1,5 +1,6 @@
 #!/bin/bash
-# run.sh BUILD EXECUTIONS TARGET...: fuzzes each target for so many executions, all at the same time, and says in a line what came of it.
+# run.sh BUILD EXECUTIONS TARGET...: fuzzes each target for so many executions, all at the same time, and says in a line
+# what came of it.
 # A target that ends well after fewer executions than that has failed too, and so has a call without a target.
 set -uo pipefail
 build=$1 executions=$2

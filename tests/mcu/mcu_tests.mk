@@ -16,7 +16,8 @@ TESTS += $(MCU_TESTS)
 
 # An image: its main program and what it uses of the firmware's core.
 MCU_IMAGES := $(patsubst tests/mcu/images/%.cpp,$(FIRMWARE_BUILD)/%.elf,$(wildcard tests/mcu/images/*.cpp))
-MCU_IMAGE_CORE := $(FIRMWARE_STARTUP) $(filter-out %/main_loop.o,$(filter $(FIRMWARE_BUILD)/firmware/% $(FIRMWARE_BUILD)/nn/%,$(FIRMWARE_OBJECTS)))
+MCU_IMAGE_CORE := $(FIRMWARE_STARTUP) \
+  $(filter-out %/main_loop.o,$(filter $(FIRMWARE_BUILD)/firmware/% $(FIRMWARE_BUILD)/nn/%,$(FIRMWARE_OBJECTS)))
 TEST_IMAGES += $(MCU_IMAGES) $(FIRMWARE_ELF) $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size
 
 $(MCU_IMAGES): $(FIRMWARE_BUILD)/%.elf: $(FIRMWARE_BUILD)/tests/mcu/images/%.o $(MCU_IMAGE_CORE)
@@ -31,9 +32,11 @@ $(FIRMWARE_BUILD)/tests/mcu/images/model.o: $(FIRMWARE_BUILD)/generated/models/v
 
 $(B)/tests/mcu.flags: FORCE
 	@mkdir -p $(@D)
-	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"'" | $(WRITE_CHANGED)
+	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' \
+	  -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"'" | $(WRITE_CHANGED)
 
-$(call objects,$(MCU_TEST_SOURCES) $(MCU_LONG_SOURCES)): $(B)/%.o: %.cpp $(B)/host.flags $(B)/tests/mcu.flags | $(GENERATED)
+$(call objects,$(MCU_TEST_SOURCES) $(MCU_LONG_SOURCES)): $(B)/%.o: %.cpp $(B)/host.flags $(B)/tests/mcu.flags | \
+  $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
 	@$(CXX) @$(B)/host.flags @$(B)/tests/mcu.flags $(HEADERS_FLAGS) $(SET_FLAGS) -MMD -MP -c $< -o $@

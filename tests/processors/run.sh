@@ -1,10 +1,11 @@
 #!/bin/bash
-# run.sh [WAY...]: twelve runs, each computed in the ways that are asked for (all of them without arguments), must have the bits that they have
-# on this processor as it is: drives of every kind of world, a flashed image, a network, a replay of a session from here, a campaign.
+# run.sh [WAY...]: twelve runs, each computed in the ways that are asked for (all of them without arguments), must have
+# the bits that they have on this processor as it is: drives of every kind of world, a flashed image, a network, a
+# replay of a session from here, a campaign.
 # Ends with "N passed, N failed".
 #
-# Needs SCREED_PROGRAM, for the way `arm64` ARM64_PROGRAM too (make test-processors sets both). An emulated processor takes ten to forty times
-# as long as this one.
+# Needs SCREED_PROGRAM, for the way `arm64` ARM64_PROGRAM too (make test-processors sets both). An emulated processor
+# takes ten to forty times as long as this one.
 set -uo pipefail
 declare -A ways=(
   [older]='env GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2,-AVX512F'
@@ -47,13 +48,14 @@ drive() {
 }
 replay() { screed replay "$folder/recorded" 2>&1; }
 campaign() {
-  { screed campaign run "$folder/small.ini" --out "$folder/$way" --quiet && screed campaign merge "$folder/$way"; } > "$folder/log" 2>&1 ||
+  { screed campaign run "$folder/small.ini" --out "$folder/$way" --quiet && screed campaign merge "$folder/$way"; } \
+    > "$folder/log" 2>&1 ||
     { cat "$folder/log"; return 1; }
   sha256sum < "$folder/$way/runs.csv" | cut -c 1-32
   rm -rf "${folder:?}/$way"
 }
-# A campaign starts the program anew, for its workers: under qemu-x86_64 these would run on this very processor, and of other processors'
-# programs the kernel must know that qemu runs them.
+# A campaign starts the program anew, for its workers: under qemu-x86_64 these would run on this very processor, and of
+# other processors' programs the kernel must know that qemu runs them.
 left_out() {
   case "$way $1" in
     'nehalem campaign'*) return 0 ;;

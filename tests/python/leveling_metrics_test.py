@@ -1,5 +1,5 @@
-"""The leveling metrics of recorded runs once more, by NumPy and SciPy from the definitions in docs/leveling-metrics.md: low-pass by
-scipy.ndimage, transport as a linear program for HiGHS. Usage: leveling_metrics_test.py SESSION..."""
+"""The leveling metrics of recorded runs once more, by NumPy and SciPy from the definitions in docs/leveling-metrics.md:
+low-pass by scipy.ndimage, transport as a linear program for HiGHS. Usage: leveling_metrics_test.py SESSION..."""
 import sys
 
 import h5py
@@ -86,7 +86,8 @@ class Surface:
         sums = coo_matrix((np.ones(row.size), (row, column))).tocsr()
         supply = np.concatenate([volumes[heaps], -volumes[pits]]) / total
         # One equation follows from the others; rounding must not make it contradict them.
-        plans = [linprog(cost.ravel(), A_eq=sums[:-1], b_eq=supply[:-1], method="highs-ds") for cost in (distance, distance**2)]
+        plans = [linprog(cost.ravel(), A_eq=sums[:-1], b_eq=supply[:-1], method="highs-ds")
+                 for cost in (distance, distance**2)]
         assert all(plan.status == 0 for plan in plans), [plan.message for plan in plans]
         return plans[0].fun * total, bound, plans[1].fun * total
 
@@ -137,7 +138,8 @@ def shares(frames, tread_m, limits):
 
 
 def visited(frames, reach_m, radius_m, bed):
-    """Share of the site's squares of 50 mm whose centres came under the robot; not a number where the site has no edge."""
+    """Share of the site's squares of 50 mm whose centres came under the robot; not a number where the site has no
+    edge."""
     if bed.wrap and radius_m == 0:
         return np.nan
     start = np.array([frames["x"][0] - frames["delta_x"][0], frames["y"][0] - frames["delta_y"][0]])
@@ -169,14 +171,18 @@ for path in sys.argv[1:]:
                 check(f"{path}: {name} at {point['time']} s", point[name], value, 1e-6, 1e-10)
         first, last = (surface["transport"] for surface in surfaces)
         check("progress", curve[-1]["progress"], 1 - last / first, 1e-6, 1e-6)
-        check("per joule", curve[-1]["transport_per_joule"], (first - last) / session["frames"][-1]["energy"], 1e-3, 1e-12)
+        check("per joule", curve[-1]["transport_per_joule"], (first - last) / session["frames"][-1]["energy"],
+              1e-3, 1e-12)
         limits = {name: float(session["parameters"].attrs[name]) for name in ("tilt_limit", "site_radius")}
         tread = session["board"].attrs["tread_mm"] / 1000
         for name, value in shares(session["frames"][:], tread, limits).items():
             # A sum within rounding of a limit may count or not.
-            check(f"{path}: {name}", curve[-1][name], value, 1e-9, 1.01 / len(session["frames"]) if name == "stuck" else 1e-12)
-        part = visited(session["frames"][:], tread / 2, limits["site_radius"] / 1000, Surface(session["terrain"]["before"], 0.0))
+            check(f"{path}: {name}", curve[-1][name], value, 1e-9,
+                  1.01 / len(session["frames"]) if name == "stuck" else 1e-12)
+        part = visited(session["frames"][:], tread / 2, limits["site_radius"] / 1000,
+                       Surface(session["terrain"]["before"], 0.0))
         assert np.isclose(curve[-1]["visited"], part, atol=0.002, equal_nan=True), (path, curve[-1]["visited"], part)
-        print(f"{path}: {len(curve)} points; T {first * 1e3:.4f} -> {last * 1e3:.4f} L m, R {surfaces[0]['relief'] * 1e3:.3f} -> "
+        print(f"{path}: {len(curve)} points; T {first * 1e3:.4f} -> {last * 1e3:.4f} L m, "
+              f"R {surfaces[0]['relief'] * 1e3:.3f} -> "
               f"{surfaces[1]['relief'] * 1e3:.3f} mm, stuck {curve[-1]['stuck']:.3f}")
 print(f"{len(sys.argv) - 1} sessions: every metric as SciPy has it")

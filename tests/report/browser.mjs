@@ -12,24 +12,28 @@ export function startBrowser() {
     headless: true,
     protocolTimeout: patience_ms,
     // A page behind another goes on as well.
-    args: ['--disable-backgrounding-occluded-windows', '--disable-renderer-backgrounding', '--disable-background-timer-throttling',
-      '--no-sandbox', '--disable-dev-shm-usage', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb'],
+    args: ['--disable-backgrounding-occluded-windows', '--disable-renderer-backgrounding',
+      '--disable-background-timer-throttling', '--no-sandbox', '--disable-dev-shm-usage',
+      '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb'],
   });
 }
 
-/// Until `condition` holds in the page. Looks every so often: a browser that is busy may draw no frame, on which it would look otherwise.
+/// Until `condition` holds in the page. Looks every so often: a browser that is busy may draw no frame, on which it
+/// would look otherwise.
 export function waitFor(page, condition, ...values) {
   return page.waitForFunction(condition, { timeout: patience_ms, polling: 50 }, ...values);
 }
 
-/// { page, complaints }: the page once it stands; complaints grow with console errors, warnings and requests for anything but the file.
+/// { page, complaints }: the page once it stands; complaints grow with console errors, warnings and requests for
+/// anything but the file.
 export async function openReport(browser, file, { scheme = 'light', width = 1280, height = 900 } = {}) {
   const page = await browser.newPage();
   const complaints = [];
   const url = pathToFileURL(file).href;
   page.on('console', (message) => {
     // What the driver of the software renderer says of its own speed is none of the page's.
-    if (['error', 'warn', 'assert'].includes(message.type()) && !message.text().includes('GPU stall')) complaints.push(message.text());
+    if (['error', 'warn', 'assert'].includes(message.type()) &&
+      !message.text().includes('GPU stall')) complaints.push(message.text());
   });
   page.on('pageerror', (error) => complaints.push(String(error)));
   page.on('request', (request) => {

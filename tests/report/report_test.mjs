@@ -1,4 +1,5 @@
-// report_test.mjs PROGRAM FOLDER: pages of runs in a headless browser, against the CSV and the summary of the same runs.
+// report_test.mjs PROGRAM FOLDER: pages of runs in a headless browser, against the CSV and the summary of the same
+// runs.
 //
 // Ends with "N passed, N failed". FOLDER is for the runs; it is empty.
 import assert from 'node:assert/strict';
@@ -21,7 +22,8 @@ model = scm
 cell = 0.01
 `;
 
-const screed = (...words) => execFileSync(program, words, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'inherit'] });
+const screed = (...words) =>
+  execFileSync(program, words, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'inherit'] });
 
 function record(name, text, ...options) {
   writeFileSync(join(folder, `${name}.ini`), text);
@@ -45,14 +47,17 @@ const moveSlider = (page, stop) =>
   }, stop);
 const lastStop = (page) => page.$eval('input[type=range]', (input) => Number(input.max));
 const shownRow = (page) =>
-  page.$$eval('details.row tr[data-column]', (rows) => Object.fromEntries(rows.map((row) => [row.dataset.column, row.children[1].dataset.value])));
-const figure = (page, name) => page.$eval(`tr[data-name="${name}"] td[data-value]`, (cell) => Number(cell.dataset.value));
+  page.$$eval('details.row tr[data-column]',
+    (rows) => Object.fromEntries(rows.map((row) => [row.dataset.column, row.children[1].dataset.value])));
+const figure = (page, name) =>
+  page.$eval(`tr[data-name="${name}"] td[data-value]`, (cell) => Number(cell.dataset.value));
 const canvas = async (page) => (await page.$('.view canvas')).screenshot({ encoding: 'base64' });
 /// The numbers of a block as the page unpacks them.
 const block = (page, name, type) =>
   page.evaluate(async (id, kind) => {
     const packed = Uint8Array.from(atob(document.getElementById(`block-${id}`).textContent), (c) => c.charCodeAt(0));
-    const bytes = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer();
+    const bytes = await new Response(
+      new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer();
     return Array.from(kind === 'float' ? new Float32Array(bytes) : new Float64Array(bytes));
   }, name, type);
 const facts = (page) => page.$eval('#facts', (script) => JSON.parse(script.textContent));
@@ -66,9 +71,11 @@ async function curvesAreTheCsv(page, csv) {
       const shown = await block(page, series.block, 'float');
       const column = csv.get(series.column).map((value) => Math.fround(value * series.factor));
       if (robot.bucket_ticks === 1) assert.deepEqual(shown, column, series.column);
-      for (let first = 0, at = 0; robot.bucket_ticks > 1 && first < column.length; first += robot.bucket_ticks, at += 2) {
+      for (let first = 0, at = 0; robot.bucket_ticks > 1 && first < column.length;
+        first += robot.bucket_ticks, at += 2) {
         const bucket = column.slice(first, first + robot.bucket_ticks);
-        assert.deepEqual([Math.min(shown[at], shown[at + 1]), Math.max(shown[at], shown[at + 1])], [Math.min(...bucket), Math.max(...bucket)], `${series.column} from row ${first}`);
+        assert.deepEqual([Math.min(shown[at], shown[at + 1]), Math.max(shown[at], shown[at + 1])],
+          [Math.min(...bucket), Math.max(...bucket)], `${series.column} from row ${first}`);
       }
       ++curves;
     }
@@ -106,7 +113,8 @@ const tests = {
       const row = await shownRow(page);
       assert.deepEqual(['frame', ...Object.keys(row)], [...csv.keys()]);
       row.frame = stops[stop];
-      for (const [name, column] of csv) assert.equal(Number(row[name]), column[stops[stop]], `${name} in row ${stops[stop]}`);
+      for (const [name, column] of csv) assert.equal(Number(row[name]), column[stops[stop]],
+        `${name} in row ${stops[stop]}`);
     }
     await page.close();
   },
@@ -120,13 +128,17 @@ const tests = {
   async 'figures are those of the summary'(browser) {
     const { page } = await openReport(browser, join(folder, 'soil.html'));
     const summary = JSON.parse(readFileSync(join(folder, 'soil', 'summary.json'), 'utf8'));
-    const near = (got, wanted, name) => assert.ok(Math.abs(got - wanted) <= 1e-9 * Math.abs(wanted), `${name}: ${got}, not ${wanted}`);
+    const near = (got, wanted, name) =>
+      assert.ok(Math.abs(got - wanted) <= 1e-9 * Math.abs(wanted), `${name}: ${got}, not ${wanted}`);
     near(await figure(page, 'Energy drawn'), summary.energy_j, 'energy');
     near(await figure(page, 'Battery at the end'), summary.battery_v, 'battery');
     near(await figure(page, 'Ground moved'), 1000 * summary.terrain_change.moved_m3, 'moved');
     near(await figure(page, 'Deepest cut'), 1000 * summary.terrain_change.deepest_cut_m, 'cut');
-    const rows = await page.$$eval('tr[data-name]', (all) => all.map((row) => [row.dataset.name, ...[...row.querySelectorAll('td[data-value]')].map((cell) => Number(cell.dataset.value))]));
-    for (const [name, key_, factor] of [['Height deviation (standard)', 'height_deviation_m', 1000], ['Relief at robot scale (rms)', 'relief_m', 1000], ['Flat cells', 'flatness', 100]]) {
+    const rows = await page.$$eval('tr[data-name]',
+      (all) => all.map((row) =>
+        [row.dataset.name, ...[...row.querySelectorAll('td[data-value]')].map((cell) => Number(cell.dataset.value))]));
+    for (const [name, key_, factor] of [['Height deviation (standard)', 'height_deviation_m', 1000],
+      ['Relief at robot scale (rms)', 'relief_m', 1000], ['Flat cells', 'flatness', 100]]) {
       const [, before, after] = rows.find((row) => row[0] === name);
       near(before, factor * summary.terrain_before[key_], `${name} before`);
       near(after, factor * summary.terrain_after[key_], `${name} after`);
@@ -134,7 +146,8 @@ const tests = {
     const identity = await page.$eval('#page', (it) => it.textContent);
     assert.ok(identity.includes(summary.content_hash) && identity.includes(summary.version));
     // The last point of the terrain's curve is the terrain at the end.
-    near((await block(page, 'terrain-deviation', 'double')).at(-1), 1000 * summary.terrain_after.height_deviation_m, 'last of the curve');
+    near((await block(page, 'terrain-deviation', 'double')).at(-1), 1000 * summary.terrain_after.height_deviation_m,
+      'last of the curve');
     await page.close();
   },
   async 'a run without recorded heights says so and moves its robot'(browser) {
@@ -150,10 +163,13 @@ const tests = {
     const { page, complaints } = await openReport(browser, join(folder, 'several.html'));
     const summary = JSON.parse(readFileSync(join(folder, 'several', 'summary.json'), 'utf8'));
     const { robots } = summary;
-    assert.equal(await page.$eval('tr[data-name="Content hash"]', (row) => row.children[1].textContent), summary.content_hash);
-    const drawn = await page.$$eval('tr[data-name="Energy drawn"] td[data-value]', (cells) => cells.map((cell) => Number(cell.dataset.value)));
+    assert.equal(await page.$eval('tr[data-name="Content hash"]', (row) => row.children[1].textContent),
+      summary.content_hash);
+    const drawn = await page.$$eval('tr[data-name="Energy drawn"] td[data-value]',
+      (cells) => cells.map((cell) => Number(cell.dataset.value)));
     assert.equal(drawn.length, 3);
-    drawn.forEach((energy, i) => assert.ok(Math.abs(energy - robots[i].energy_j) <= 1e-9 * energy, `robot ${i}: ${energy}`));
+    drawn.forEach((energy, i) =>
+      assert.ok(Math.abs(energy - robots[i].energy_j) <= 1e-9 * energy, `robot ${i}: ${energy}`));
     assert.equal((await page.$$('details.row')).length, 3);
     const start = await canvas(page);
     await moveSlider(page, await lastStop(page));
@@ -164,23 +180,31 @@ const tests = {
   async 'figures of a campaign are those of runs.csv'(browser) {
     const { page, complaints } = await openReport(browser, join(folder, 'out/soils/report.html'));
     const runs = readTable('soils', 'runs.csv');
-    const near = (got, wanted, name) => assert.ok(Math.abs(got - wanted) <= 1e-9 * Math.max(1e-6, Math.abs(wanted)), `${name}: ${got}, not ${wanted}`);
+    const near = (got, wanted, name) =>
+      assert.ok(Math.abs(got - wanted) <= 1e-9 * Math.max(1e-6, Math.abs(wanted)), `${name}: ${got}, not ${wanted}`);
     const mean = (list) => list.reduce((sum, it) => sum + it, 0) / list.length;
     for (const metric of ['energy_j', 'terrain_after.relief_m']) {
       const { metrics } = await facts(page);
       await page.select('select[aria-label=Metric]', String(metrics.findIndex((it) => it.name === metric)));
-      await waitFor(page, (name) => document.querySelector('[data-metric]')?.dataset.metric === name && document.querySelector('[data-name="cell 5"]') !== null, metric);
+      await waitFor(page, (name) => document.querySelector('[data-metric]')?.dataset.metric === name &&
+        document.querySelector('[data-name="cell 5"]') !== null, metric);
       for (let cell = 0; cell < 6; ++cell) {
         const of = (at) => runs.filter((run) => Number(run.cell) === at).map((run) => Number(run[metric]));
-        const shown = await page.$eval(`tr[data-name="cell ${cell}"]`, (row) => ({ text: row.textContent, numbers: [...row.querySelectorAll('td[data-value]')].map((it) => Number(it.dataset.value)),
-          intervals: [...row.querySelectorAll('.interval')].map((it) => [Number(it.dataset.low), Number(it.dataset.high)]) }));
-        assert.ok(shown.text.startsWith(runs[5 * cell]['experiment.algorithm'] + runs[5 * cell]['soil.preset']), shown.text);
+        const shown = await page.$eval(`tr[data-name="cell ${cell}"]`,
+          (row) => ({ text: row.textContent,
+            numbers: [...row.querySelectorAll('td[data-value]')].map((it) => Number(it.dataset.value)),
+          intervals: [...row.querySelectorAll('.interval')].map((it) =>
+            [Number(it.dataset.low), Number(it.dataset.high)]) }));
+        assert.ok(shown.text.startsWith(runs[5 * cell]['experiment.algorithm'] + runs[5 * cell]['soil.preset']),
+          shown.text);
         assert.equal(shown.numbers[0], 5);
         near(shown.numbers[1], mean(of(cell)), `${metric} of cell ${cell}`);
         const [low, high] = shown.intervals[0];
-        assert.ok(low <= shown.numbers[1] && shown.numbers[1] <= high && low >= Math.min(...of(cell)) && high <= Math.max(...of(cell)), `${low} to ${high}`);
+        assert.ok(low <= shown.numbers[1] && shown.numbers[1] <= high && low >= Math.min(...of(cell)) &&
+          high <= Math.max(...of(cell)), `${low} to ${high}`);
         if (cell === 1) assert.equal(shown.numbers.length, 3, 'the baseline is not compared with itself');
-        else near(shown.numbers[2], mean(of(cell).map((value, seed) => value - of(1)[seed])), `difference of cell ${cell}`);
+        else near(shown.numbers[2], mean(of(cell).map((value, seed) => value - of(1)[seed])),
+          `difference of cell ${cell}`);
       }
     }
     assert.deepEqual(complaints, []);
@@ -195,32 +219,42 @@ const tests = {
       await waitFor(page, (wanted) => document.querySelector('[data-curve]')?.dataset.curve === wanted, name);
       const end = Math.max(...readTable('soils', 'curves.csv').map((point) => Number(point.time)));
       for (let cell = 0; cell < 6; ++cell) {
-        const values = readTable('soils', 'curves.csv').filter((point) => Math.floor(Number(point.run) / 5) === cell && Number(point.time) === end).map((point) => Number(point[name]));
+        const values = readTable('soils', 'curves.csv').filter((point) => Math.floor(Number(point.run) / 5) === cell &&
+          Number(point.time) === end).map((point) => Number(point[name]));
         assert.equal(values.length, 5);
         const mean = values.reduce((sum, it) => sum + it, 0) / 5;
-        const shown = await page.$eval(`tr[data-name="curve of cell ${cell}"]`, (row) => ({ mean: Number([...row.querySelectorAll('td[data-value]')].at(-1).dataset.value), interval: { ...[...row.querySelectorAll('.interval')].at(-1).dataset } }));
-        assert.ok(Math.abs(shown.mean - mean) <= 1e-9 * Math.abs(mean), `${name} of cell ${cell}: ${shown.mean}, not ${mean}`);
+        const shown = await page.$eval(`tr[data-name="curve of cell ${cell}"]`,
+          (row) => ({ mean: Number([...row.querySelectorAll('td[data-value]')].at(-1).dataset.value),
+            interval: { ...[...row.querySelectorAll('.interval')].at(-1).dataset } }));
+        assert.ok(Math.abs(shown.mean - mean) <= 1e-9 * Math.abs(mean),
+          `${name} of cell ${cell}: ${shown.mean}, not ${mean}`);
         assert.ok(Number(shown.interval.low) <= mean && mean <= Number(shown.interval.high));
       }
-      assert.equal(await page.$eval('[data-curve] .u-legend', (it) => [...it.querySelectorAll('.u-series')].filter((row) => getComputedStyle(row).display !== 'none').length), 1 + 6, 'time and cells; no bands');
+      assert.equal(await page.$eval('[data-curve] .u-legend',
+        (it) => [...it.querySelectorAll('.u-series')].filter((row) =>
+          getComputedStyle(row).display !== 'none').length), 1 + 6, 'time and cells; no bands');
     }
     assert.deepEqual(complaints, []);
     await page.close();
     const samples = await openReport(browser, join(folder, 'out/samples/report.html'));
-    assert.match(await samples.page.$eval('body', (it) => it.textContent), /Curves over time are drawn of at most 12 cells\./);
+    assert.match(await samples.page.$eval('body', (it) => it.textContent),
+      /Curves over time are drawn of at most 12 cells\./);
     await samples.page.close();
   },
   async 'a campaign leads to its runs, says how they ended, and draws samples over their factor'(browser) {
     const { page, complaints } = await openReport(browser, join(folder, 'out/soils/report.html'), { scheme: 'dark' });
-    assert.deepEqual(await page.$$eval('[data-column] .mean', (all) => all.length), 6 + 5 + 6 + 2 + 3, 'cells, differences, ranks, levels');
-    const ended = await page.$$eval('tr[data-name^="ends of cell"]', (rows) => rows.map((row) => Number(row.querySelector('td[data-value]').dataset.value)));
+    assert.deepEqual(await page.$$eval('[data-column] .mean', (all) => all.length), 6 + 5 + 6 + 2 + 3,
+      'cells, differences, ranks, levels');
+    const ended = await page.$$eval('tr[data-name^="ends of cell"]',
+      (rows) => rows.map((row) => Number(row.querySelector('td[data-value]').dataset.value)));
     assert.deepEqual(ended, [5, 5, 5, 5, 5, 5]);
     const links = await page.$$eval('details.runs a', (all) => all.map((it) => decodeURI(new URL(it.href).pathname)));
     assert.equal(links.length, 30);
     for (const link of links) assert.ok(existsSync(join(link, 'session.h5')), link);
     await page.close();
     const samples = await openReport(browser, join(folder, 'out/samples/report.html'));
-    assert.equal(await samples.page.$$eval('[data-factor="parameters.walk_speed_max"] .single', (all) => all.length), 15);
+    assert.equal(await samples.page.$$eval('[data-factor="parameters.walk_speed_max"] .single', (all) => all.length),
+      15);
     assert.deepEqual([...complaints, ...samples.complaints], []);
     await samples.page.close();
   },
@@ -230,7 +264,8 @@ const tests = {
       const path = join(folder, 'out/part/results', file);
       writeFileSync(path, readFileSync(path, 'utf8').split('\n').slice(1).join('\n'));
     }
-    assert.throws(() => execFileSync(program, ['report', 'out/part'], { cwd: folder, stdio: ['ignore', 'pipe', 'pipe'] }), (error) => {
+    assert.throws(() => execFileSync(program, ['report', 'out/part'],
+      { cwd: folder, stdio: ['ignore', 'pipe', 'pipe'] }), (error) => {
       const text = String(error.stderr);
       assert.match(text, /^screed: out\/part: \d+ of 30 runs done, \d+ missing; .*--incomplete\n$/);
       return true;
@@ -267,10 +302,25 @@ function readTable(name, file) {
 record('soil', soil, '--heights');
 record('rigid', `[experiment]\nduration = 12\nseed = 2\n[map]\nsize = 2\nedges = walls\n[radio]\nkey = ${key}\n`);
 record('several', '[experiment]\nduration = 12\n[map]\nsize = 3\nedges = walls\n[robots]\ncount = 3\n');
-runCampaign('soils', `[campaign]\nexperiment = soil.ini\nseeds = 1..5\nkeep = session\n[set]\nexperiment.duration = 8\nmap.ramp = 5\n[grid]
-experiment.algorithm = random_walk, spin_on_peak\nsoil.preset = gravel, viper, lete_sand\n`, '--metric', 'energy_j', '--baseline', '1');
-runCampaign('samples', `[campaign]\nexperiment = rigid.ini\n[set]\nexperiment.duration = 10\n[latin_hypercube]\ncount = 15
-parameters.walk_speed_max = 100..200\n`, '--metric', 'distance_m');
+runCampaign('soils', `[campaign]
+experiment = soil.ini
+seeds = 1..5
+keep = session
+[set]
+experiment.duration = 8
+map.ramp = 5
+[grid]
+experiment.algorithm = random_walk, spin_on_peak
+soil.preset = gravel, viper, lete_sand
+`, '--metric', 'energy_j', '--baseline', '1');
+runCampaign('samples', `[campaign]
+experiment = rigid.ini
+[set]
+experiment.duration = 10
+[latin_hypercube]
+count = 15
+parameters.walk_speed_max = 100..200
+`, '--metric', 'distance_m');
 const browser = await startBrowser();
 let failed = 0;
 for (const [name, test] of Object.entries(tests)) {

@@ -3,9 +3,11 @@
 REPORT_TEST_WORK := $(BUILD_ROOT)/report/test
 
 .PHONY: test-report
-test-report: $(SCREED) $(REPORT_PAGE) $(REPORT_TEST_WORK)/packages  ## pages of recorded runs in a headless browser (needs npm, chromium)
+test-report:  ## pages of recorded runs in a headless browser (needs npm, chromium)
+test-report: $(SCREED) $(REPORT_PAGE) $(REPORT_TEST_WORK)/packages
 	@cp tests/report/*.mjs $(REPORT_TEST_WORK)
-	@runs=$$(mktemp -d) && trap 'rm -rf "$$runs"' EXIT && node $(REPORT_TEST_WORK)/report_test.mjs $(abspath $(SCREED)) "$$runs"
+	@runs=$$(mktemp -d) && trap 'rm -rf "$$runs"' EXIT && \
+	  node $(REPORT_TEST_WORK)/report_test.mjs $(abspath $(SCREED)) "$$runs"
 $(REPORT_TEST_WORK)/packages: tests/report/package.json tests/report/package-lock.json
 	@rm -rf $(REPORT_TEST_WORK)
 	@mkdir -p $(REPORT_TEST_WORK)

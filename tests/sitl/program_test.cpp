@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/json.h"
 #include "paths.h"
 
 namespace screed::testing {
@@ -56,23 +59,48 @@ TEST_F(Program, AModelOfOnesOwnDrives) {
   EXPECT_EQ(run("sim e.ini --quiet --no-pictures").exit_code, 0);
 }
 
-TEST_F(Program, DocsHaveTheKeysAsTheyAre) {
-  const Result keys = run("sim --keys");
-  ASSERT_EQ(keys.exit_code, 0) << keys.err;
-  const std::string page = read("docs/experiments.md");
-  std::size_t rows = 0;
-  std::string block;
-  for (std::size_t i = 0; i < keys.out.size();) {
-    const std::size_t end = keys.out.find('\n', i) + 1;
-    const std::string line = keys.out.substr(i, end - i);
-    i = end;
-    if (line[0] != '|') continue;
-    EXPECT_NE(page.find(line), std::string::npos) << line;
-    block += line;
-    ++rows;
+// What pages say of keys, as `[map] edges` or `--set map.edges=walls`: there is such a key.
+TEST_F(Program, DocsNameKeysThatThereAre) {
+  std::set<std::string> keys;
+  std::set<std::string> sections;
+  for (const char* command : {"sim --keys", "campaign plan --keys"}) {
+    const Result listed = run(command);
+    ASSERT_EQ(listed.exit_code, 0) << listed.err;
+    std::istringstream table(listed.out);
+    for (std::string line; std::getline(table, line);) {
+      std::smatch row;
+      if (!std::regex_search(line, row, std::regex(R"(^\| \[(\w+)\](?:, \[\w+\])? (\w+) \|)")))
+        continue;
+      keys.insert(row.str(1) + "." + row.str(2));
+      sections.insert(row.str(1));
+    }
   }
-  EXPECT_GT(rows, 100U);
-  EXPECT_NE(page.find(block), std::string::npos) << "rows in another order";
+  EXPECT_GT(keys.size(), 150U);
+  std::size_t mentions = 0;
+  for (const auto& file : std::filesystem::directory_iterator("docs")) {
+    // The examples of extending.md are keys that are to be added.
+    if (file.path().extension() != ".md" || file.path().stem() == "extending") continue;
+    const std::string page = read(file.path().string());
+    const std::regex mention(R"(`\[(\w+)\] (\w+)|--set '?(\w+)\.(\w+)=)");
+    for (std::sregex_iterator at(page.begin(), page.end(), mention), end; at != end; ++at) {
+      const std::string section = at->str(1) + at->str(3);
+      const std::string key = at->str(2) + at->str(4);
+      if (sections.count(section) == 0 || key == "KEY") continue;
+      ++mentions;
+      EXPECT_EQ(keys.count(section + "." + key), 1U) << file << ": " << at->str();
+    }
+  }
+  EXPECT_GT(mentions, 60U);
+}
+
+TEST_F(Program, DocsHaveTheFiguresOfASummary) {
+  write("e.ini", std::string(kShort) + "[map]\nmodel = scm\nsize = 0.5\n");
+  const Json summary = Json::parse(run("sim e.ini --quiet --no-pictures --json").out);
+  const std::string page = read("docs/experiments.md") + read("docs/leveling-metrics.md");
+  for (const char* group : {"terrain_before", "terrain_after", "terrain_change", "leveling"}) {
+    for (const auto& [name, value] : summary[group].items())
+      EXPECT_NE(page.find("`" + name + "`"), std::string::npos) << group << " " << name;
+  }
 }
 
 // Every subcommand is a file, and they are listed by name.

@@ -1,11 +1,12 @@
 #!/bin/bash
-# A campaign through a real Slurm: submitted as a job array, a worker killed, a task killed, its node down and up again, submitted
-# anew; the merged files are those of a local run, byte by byte. SCREED_PROGRAM names the program under test.
+# A campaign through a real Slurm: submitted as a job array, a worker killed, a task killed, its node down and up again,
+# submitted anew; the merged files are those of a local run, byte by byte. SCREED_PROGRAM names the program under test.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd -P)
 
 for program in slurmctld slurmd sbatch munged; do
-  PATH=$PATH:/usr/sbin command -v $program > /dev/null || { echo "$program is not installed: apt install slurm-wlm munge"; exit 77; }
+  PATH=$PATH:/usr/sbin command -v $program > /dev/null \
+    || { echo "$program is not installed: apt install slurm-wlm munge"; exit 77; }
 done
 [ "$(id -u)" = 0 ] || { echo "a Slurm of its own needs root"; exit 77; }
 export PATH=$PATH:/usr/sbin
@@ -36,9 +37,11 @@ screed=$SCREED_PROGRAM
 "$screed" campaign merge local > /dev/null
 
 eval "$("$root/tools/slurm/one_node.sh" start "$work/slurm")"
-submit() { "$screed" campaign submit slurm.ini --slurm > submitted || fail "campaign submit"; grep -oP 'job \K[0-9]+' submitted || true; }
+submit() { "$screed" campaign submit slurm.ini --slurm > submitted || fail "campaign submit";
+  grep -oP 'job \K[0-9]+' submitted || true; }
 results() { cat out/slurm/results/*.jsonl 2> /dev/null | wc -l; }
-wait_for_results() { until [ "$(results)" -ge "$1" ]; do squeue --noheader | grep -q . || fail "no job and $(results) results"; sleep 0.1; done; }
+wait_for_results() { until [ "$(results)" -ge "$1" ]; do squeue --noheader | grep -q . ||
+  fail "no job and $(results) results"; sleep 0.1; done; }
 wait_for_end() { while squeue --noheader --jobs="$1" 2> /dev/null | grep -q .; do sleep 0.2; done; }
 pids() { pgrep -f -- "$1" || true; }  # of this test's folder alone
 
@@ -64,7 +67,8 @@ until sinfo --noheader --nodes="$node" --format=%t | grep -qE '^(idle|mix|alloc)
   sleep 0.2
 done
 # Slurm lets tasks of a lost node wait for two minutes.
-for task in $(squeue --noheader --array --format=%i --jobs="$job"); do scontrol update jobid="$task" starttime=now 2> /dev/null || true; done
+for task in $(squeue --noheader --array --format=%i --jobs="$job"); do
+  scontrol update jobid="$task" starttime=now 2> /dev/null || true; done
 
 # A whole task is killed: it fails, and its runs are missing.
 before=$(results)
@@ -79,8 +83,10 @@ job=$(submit)
 [ -n "$job" ] || fail "no second job: $(cat submitted)"
 if grep -q " 68 runs" submitted; then fail "finished runs were submitted again: $(cat submitted)"; fi
 wait_for_end "$job"
-"$screed" campaign submit slurm.ini --slurm | grep -q "complete: 68 runs; nothing to submit" || fail "not complete: $("$screed" campaign status out/slurm)"
+"$screed" campaign submit slurm.ini --slurm | grep -q "complete: 68 runs; nothing to submit" ||
+  fail "not complete: $("$screed" campaign status out/slurm)"
 "$screed" campaign merge out/slurm > /dev/null || fail "campaign merge"
 cmp local/runs.csv out/slurm/runs.csv
 cmp local/campaign.h5 out/slurm/campaign.h5
-echo "68 runs through $(sinfo --version): a worker, a node and a task killed, submitted again; merged like a local run, byte by byte"
+echo "68 runs through $(sinfo --version): a worker, a node and a task killed, submitted again;" \
+  "merged like a local run, byte by byte"

@@ -6,7 +6,8 @@
 
 ARDUINO_ZIP := $(BUILD_ROOT)/arduino/Screed-$(VERSION).zip
 ARDUINO_TEST_ELF := $(BUILD_ROOT)/arduino/example.elf
-ARDUINO_PACKED := $(wildcard tools/arduino/*) LICENSE $(shell find firmware nn/infer hal boards -name '*.cpp' -o -name '*.h') \
+ARDUINO_PACKED := $(wildcard tools/arduino/*) LICENSE \
+  $(shell find firmware nn/infer hal boards -name '*.cpp' -o -name '*.h') \
   $(FIRMWARE_SCHEMA_HEADERS)
 
 .PHONY: arduino

@@ -1,6 +1,7 @@
 #!/bin/bash
-# build.sh LIBRARY.zip OUT.elf: unpacks the library and builds its example as the Arduino IDE would, with Debian's Arduino core:
-# recipes and flags of its platform.txt, recursive src/, and no include folder but src/, the core and the variant.
+# build.sh LIBRARY.zip OUT.elf: unpacks the library and builds its example as the Arduino IDE would, with Debian's
+# Arduino core: recipes and flags of its platform.txt, recursive src/, and no include folder but src/, the core and the
+# variant.
 set -euo pipefail
 
 zip=$(realpath "$1")
@@ -18,7 +19,8 @@ done
 
 # As platform.txt (recipe.c.o.pattern and its neighbours) with Pololu's boards.txt, warnings at their default.
 common=(-c -g -Os -w -ffunction-sections -fdata-sections -flto -mmcu=atmega32u4 -DF_CPU=16000000L -DARDUINO=10819
-  -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR -DUSB_VID=0x1ffb -DUSB_PID=0x2300 '-DUSB_MANUFACTURER="Pololu Corporation"'
+  -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR -DUSB_VID=0x1ffb -DUSB_PID=0x2300 \
+    '-DUSB_MANUFACTURER="Pololu Corporation"'
   '-DUSB_PRODUCT="Pololu A-Star 32U4"' "-I$core" "-I$root/variants/leonardo")
 c=(avr-gcc -std=gnu11 -fno-fat-lto-objects "${common[@]}")
 # WString.cpp of this core knows DECIMAL_DIG by the compiler's name only.
@@ -36,7 +38,8 @@ mkdir -p "$objects/core"
     printf '%s\0' "${cxx[*]@Q} -I$library/src $file -o $object"
   done < <(find "$library/src" -name '*.cpp' | LC_ALL=C sort)
   # A sketch is compiled as C++ behind #include <Arduino.h>.
-  printf '%s\0' "${cxx[*]@Q} -I$library/src -x c++ -include Arduino.h $library/examples/Screed/Screed.ino -o $objects/sketch.o"
+  printf '%s\0' "${cxx[*]@Q} -I$library/src -x c++ -include Arduino.h \
+$library/examples/Screed/Screed.ino -o $objects/sketch.o"
 } | xargs -0 -P "$(nproc)" -I{} bash -c '{}'
 
 avr-gcc-ar rcs "$folder/core.a" "$objects"/core/*.o

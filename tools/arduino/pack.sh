@@ -1,8 +1,8 @@
 #!/bin/bash
 # pack.sh BOARD VERSION GENERATED OUT.zip: packs the firmware as a library that the Arduino IDE takes as it is.
 #
-# The IDE compiles every source below src/ with src/ as the only include folder. So the sources keep their paths below src/,
-# and src/pins.h, src/board.h and src/build_info.h lead to the board the library is packed for.
+# The IDE compiles every source below src/ with src/ as the only include folder. So the sources keep their paths below
+# src/, and src/pins.h, src/board.h and src/build_info.h lead to the board the library is packed for.
 set -euo pipefail
 
 board=$1
@@ -27,8 +27,10 @@ find firmware nn/infer hal/avr boards \( -name '*.h' -o -name '*.cpp' \) -print0
 cp --parents hal/*.h "$src"
 # The sketch takes the main program's place, the core's USB that of the image's own.
 rm -r "$src/hal/avr/arduino/main.cpp" "$src/hal/avr/usb"
-# The core's USB takes some 2 kB more than the image's own, and the IDE cannot order the functions: one algorithm more stays out.
-sed -i 's/^#define SCREED_LEAVE_OUT "training_drive peak_memory strokes"$/#define SCREED_LEAVE_OUT "training_drive peak_memory strokes coverage"/' "$src/firmware/parameters/algorithms_in_build.h"
+# The core's USB takes some 2 kB more than the image's own, and the IDE cannot order the functions: one algorithm more
+# stays out.
+sed -i '/^#define SCREED_LEAVE_OUT "training_drive peak_memory strokes"$/s/"$/ coverage"/' \
+  "$src/firmware/parameters/algorithms_in_build.h"
 grep -q '"training_drive peak_memory strokes coverage"' "$src/firmware/parameters/algorithms_in_build.h"
 # The IDE has flags of its own, and 28,672 bytes as well: what makes the image smaller stands in the sources.
 pragma=$(printf ', "%s"' ${SMALLER:-})
@@ -36,8 +38,10 @@ pragma=$(printf ', "%s"' ${SMALLER:-})
 install -D -m 644 -t "$src/schema" "$generated"/schema/{values,class_values,classes,messages}.h
 cp "$here/Screed.h" "$src"
 
-{ echo '// The board this library was packed for: change it here and in pins.h.' ; echo "#include \"boards/$board/board.h\"" ; } > "$src/board.h"
-{ echo '// The board this library was packed for: change it here and in board.h.' ; echo "#include \"boards/$board/pins.h\"" ; } > "$src/pins.h"
+{ echo '// The board this library was packed for: change it here and in pins.h.' ;
+  echo "#include \"boards/$board/board.h\"" ; } > "$src/board.h"
+{ echo '// The board this library was packed for: change it here and in board.h.' ;
+  echo "#include \"boards/$board/pins.h\"" ; } > "$src/pins.h"
 { echo "#define SCREED_VERSION \"$version\"" ; echo "#define SCREED_BOARD \"$board\"" ; } > "$src/build_info.h"
 
 sed "s/@VERSION@/$number/" "$here/library.properties.in" > "$library/library.properties"

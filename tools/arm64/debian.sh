@@ -1,9 +1,11 @@
 #!/bin/bash
-# What a build for 64-bit Arm takes from Debian beside this system's packages, which stay as they are: apt keeps lists and state of its
-# own below FOLDER.
+# What a build for 64-bit Arm takes from Debian beside this system's packages, which stay as they are: apt keeps lists
+# and state of its own below FOLDER.
 #
-# debian.sh sysroot FOLDER LIST...: headers and libraries for arm64 that the lists of packages name, in FOLDER/root, for a cross compiler and qemu-user.
-# debian.sh ode FOLDER HOST: Debian's source of ODE, compiled by HOST-g++ without fused multiply-add, in FOLDER/lib. On arm64 Debian's own
+# debian.sh sysroot FOLDER LIST...: headers and libraries for arm64 that the lists of packages name, in FOLDER/root, for
+# a cross compiler and qemu-user.
+# debian.sh ode FOLDER HOST: Debian's source of ODE, compiled by HOST-g++ without fused multiply-add, in FOLDER/lib. On
+# arm64 Debian's own
 #   library has it, and so gives other bits than on x86-64.
 set -euo pipefail
 what=$1
@@ -61,8 +63,10 @@ case $what in
       { cat "$folder/apt/log" >&2; exit 1; }
     tar xf "$folder"/source/ode_*.orig.tar.* -C "$folder/source" --strip-components=1
     cd "$folder/source"
-    { ./configure --host="$1" --prefix="$folder" --enable-double-precision --disable-shared --disable-demos --with-trimesh=none \
-        CFLAGS='-O2 -fPIC -ffp-contract=off' CXXFLAGS='-O2 -fPIC -ffp-contract=off' && make -j"$(nproc)" && make install; } > "$folder/log" 2>&1 ||
+    { ./configure --host="$1" --prefix="$folder" --enable-double-precision --disable-shared --disable-demos \
+      --with-trimesh=none \
+        CFLAGS='-O2 -fPIC -ffp-contract=off' CXXFLAGS='-O2 -fPIC -ffp-contract=off' && make -j"$(nproc)" &&
+        make install; } > "$folder/log" 2>&1 ||
       { tail -n 20 "$folder/log" >&2; exit 1; }
     rm -r "$folder/source" "$folder/apt"
     ;;

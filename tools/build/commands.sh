@@ -1,6 +1,7 @@
 #!/bin/bash
 # commands.sh FILE...: C++ that declares and calls the registration of every subcommand, a file NAME_command.cpp each
-# (tools/screed/cli/command.h), by name. GROUP_NAME_command.cpp beside GROUP_command.cpp is a subcommand of `screed GROUP`.
+# (tools/screed/cli/command.h), by name. GROUP_NAME_command.cpp beside GROUP_command.cpp is a subcommand of `screed
+# GROUP`.
 set -euo pipefail
 export LC_ALL=C
 

@@ -1,6 +1,7 @@
-# Which sources are compiled together: from paths, sorted, a line each, makes words NAME:SOURCE,SOURCE,... A group ends with a folder,
-# unless it is still small (of less than two thirds of `most` sources), so that a new file moves no others than its neighbours. `only` names
-# the sources that are wanted, if not all: no sources meet that do not meet in a group of all.
+# Which sources are compiled together: from paths, sorted, a line each, makes words NAME:SOURCE,SOURCE,... A group ends
+# with a folder, unless it is still small (of less than two thirds of `most` sources), so that a new file moves no
+# others than its neighbours. `only` names the sources that are wanted, if not all: no sources meet that do not meet in
+# a group of all.
 function wanted(members,    each, count, i, left) {
   if (only == "") return members
   count = split(members, each, ",")

@@ -1,4 +1,5 @@
-# Prints the entry points of makefiles: rules "target: ...  ## what it does (OPTION=...)", with lines "##   more" below them.
+# Prints the entry points of makefiles: rules "target: ...  ## what it does (OPTION=...)", with lines "##   more"
+# below them.
 /^[a-z][a-z0-9-]*:.*  ## / {
   target = $0
   sub(/:.*/, "", target)

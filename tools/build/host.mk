@@ -1,6 +1,8 @@
-# The host program build/<BUILD>/screed: its sources, flags, generated headers and library. Included by the top Makefile.
+# The host program build/<BUILD>/screed: its sources, flags, generated headers and library. Included by the top
+# Makefile.
 #
-# Needs options.mk and schema.mk. Gives LIBRARY, COMMAND_LINE, SCREED, LIBRARY_SOURCES, GENERATED, the rules that make objects, and $(link).
+# Needs options.mk and schema.mk. Gives LIBRARY, COMMAND_LINE, SCREED, LIBRARY_SOURCES, GENERATED, the rules that make
+# objects, and $(link).
 
 DATA_DIR := $(CURDIR)/host_sim/data
 BOARDS_DIR := $(CURDIR)/boards
@@ -11,7 +13,7 @@ EXPERIMENT ?= host_sim/data/experiments/level_bed.ini
 # MCU=no: a program without simavr, and so without `sim --hal mcu` and `parity`.
 MCU ?= yes
 
-# ---- sources -----------------------------------------------------------------------------------------------------------------
+# ---- sources ---------------------------------------------------------------------------------------------------------
 
 # C++14 is what gcc-avr 5.4 understands: what reaches the microcontroller is compiled as such on the host too.
 CORE_SOURCES := $(call sources,firmware nn/infer)
@@ -36,14 +38,15 @@ LIBRARY := $(B)/libscreed.a
 COMMAND_LINE := $(B)/libcommand_line.a
 SCREED := $(B)/screed
 
-# ---- flags, in response files: objects are rebuilt when they change, and pkg-config runs once ----------------------------------
+# ---- flags, in response files: objects are rebuilt when they change, and pkg-config runs once ------------------------
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wnon-virtual-dtor \
             -Woverloaded-virtual -Wdouble-promotion -Wimplicit-fallthrough -Werror
 # GCC collects what it no longer needs only when it holds half a gigabyte: collecting is a tenth of its time.
 GCC_HEAP = $(if $(findstring clang,$(CXX)),,--param=ggc-min-heapsize=524288)
 # The same bits on every processor: no fused multiply-add, and Eigen adds in no order of its vector code.
-COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fno-math-errno -I. -I$(BUILD_ROOT)/generated
+COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fno-math-errno -I. \
+  -I$(BUILD_ROOT)/generated
 
 PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash ncursesw
 TEST_PACKAGES := gtest_main mpfr
@@ -73,7 +76,8 @@ $(ODE_FOLDER)/lib/libode.a: tools/arm64/debian.sh | $(SYSROOT)
 	@touch $@
 $(B)/link.flags: FORCE | $(ODE)
 	@mkdir -p $(@D)
-	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD))) $(if $(ODE),-L$(dir $(ODE)))" ; pkg-config --libs $(PACKAGES) $(LINK_PACKAGES) ; \
+	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD))) $(if $(ODE),-L$(dir $(ODE)))" ; \
+	   pkg-config --libs $(PACKAGES) $(LINK_PACKAGES) ; \
 	   echo "-lpagmo -lboost_serialization -ltbb $(if $(filter yes,$(MCU)),-lsimavr)" ; } | $(WRITE_CHANGED)
 
 # Libraries whose headers are known to single files.
@@ -85,18 +89,21 @@ $(TINY_DNN_OBJECTS): | $(B)/tiny_dnn/third_party/stb
 $(B)/tiny_dnn/third_party/stb:
 	@mkdir -p $(@D)
 	@ln -sfn "$$(pkg-config --variable=includedir stb)" $@
-# Large matrices on which no world's bits depend: Eigen with its vector code, by another name, since a linker takes one of two that are
-# called alike.
-VECTOR_SOURCES := nn/training/predict.cpp nn/terrain/flux_trainer.cpp nn/terrain/window_network.cpp tools/bench/speed/network_bench.cpp
+# Large matrices on which no world's bits depend: Eigen with its vector code, by another name, since a linker takes one
+# of two that are called alike.
+VECTOR_SOURCES := nn/training/predict.cpp nn/terrain/flux_trainer.cpp nn/terrain/window_network.cpp \
+  tools/bench/speed/network_bench.cpp
 $(call objects,$(VECTOR_SOURCES)): EXTRA_FLAGS += -UEIGEN_DONT_VECTORIZE -DEigen=EigenVectorised
 RSVG_FLAGS = $(shell $(call package_flags,librsvg-2.0))
 RSVG_SOURCES := host_sim/render/chart/svg_png.cpp
 $(call objects,$(RSVG_SOURCES)): EXTRA_FLAGS = $(RSVG_FLAGS)
 SDL_FLAGS = $(shell $(call package_flags,sdl2))
-SDL_SOURCES := tools/screed/viewer/window.cpp tools/screed/viewer/gamepad_input.cpp tests/unit/tools/screed/viewer/gamepad_input_test.cpp
+SDL_SOURCES := tools/screed/viewer/window.cpp tools/screed/viewer/gamepad_input.cpp \
+  tests/unit/tools/screed/viewer/gamepad_input_test.cpp
 $(call objects,$(SDL_SOURCES)): EXTRA_FLAGS = $(SDL_FLAGS)
 
-# ---- generated headers: what the program knows of its surroundings; only files that include them depend on them ----------------
+# ---- generated headers: what the program knows of its surroundings; only files that include them depend on them
+# ----------------
 
 $(B)/generated/version.h: FORCE
 	@mkdir -p $(@D)
@@ -122,16 +129,19 @@ $(B)/generated/boards.h: FORCE
 $(B)/generated/commands.h: FORCE
 	@mkdir -p $(@D)
 	@tools/build/commands.sh $(COMMAND_SOURCES) | $(WRITE_CHANGED)
-GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boards.h $(B)/generated/commands.h $(SCHEMA_HEADERS)
+GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boards.h $(B)/generated/commands.h \
+  $(SCHEMA_HEADERS)
 
-# ---- headers of libraries, compiled once: a third to a half of a source's time goes into them ----------------------------------
+# ---- headers of libraries, compiled once: a third to a half of a source's time goes into them ------------------------
 
-# tools/build/headers/SET.h stands before the sources that $(call with_headers,SET,SOURCES) names. HEADERS=no does without, which shows
-# in a clean build whether each source includes what it uses.
+# tools/build/headers/SET.h stands before the sources that $(call with_headers,SET,SOURCES) names. HEADERS=no does
+# without, which shows in a clean build whether each source includes what it uses.
 HEADERS ?= yes
 ifeq ($(HEADERS),yes)
-# Behind them GCC 12 takes `std::string(kText) + "more"` for a write out of bounds; clang does not know the second of the flags.
-HEADERS_FLAGS = $(if $(HEADER_SET),-include $(B)/headers/$(HEADER_SET).h $(if $(findstring clang,$(CXX)),,-Wno-array-bounds -Wno-stringop-overflow))
+# Behind them GCC 12 takes `std::string(kText) + "more"` for a write out of bounds; clang does not know the second of
+# the flags.
+HEADERS_FLAGS = $(if $(HEADER_SET),-include $(B)/headers/$(HEADER_SET).h \
+  $(if $(findstring clang,$(CXX)),,-Wno-array-bounds -Wno-stringop-overflow))
 define with_headers
 $(call objects,$(2)): HEADER_SET = $(1)
 $(call objects,$(2)): $(B)/headers/$(1).h.gch
@@ -139,13 +149,14 @@ endef
 else ifneq ($(HEADERS),no)
 $(error HEADERS=$(HEADERS): yes or no)
 endif
-# A release is compiled with -O2 where it computes, and more quickly where it does not: what runs once in a run, and tests. A compiled
-# header brings along the level that it was compiled with.
+# A release is compiled with -O2 where it computes, and more quickly where it does not: what runs once in a run, and
+# tests. A compiled header brings along the level that it was compiled with.
 # Under the sanitizers, where compiling takes longest, neither is optimised.
 SET_FLAGS_cold := $(if $(filter release,$(BUILD)),-O1,-O0)
 SET_FLAGS_test := -O0
 SET_FLAGS = $(SET_FLAGS_$(HEADER_SET))
-COLD_SOURCES := $(COMMAND_LINE_SOURCES) $(PROGRAM_SOURCES) $(filter $(addsuffix /%,$(addprefix host_sim/,campaign engine benchmark search soil_validation \
+COLD_SOURCES := $(COMMAND_LINE_SOURCES) $(PROGRAM_SOURCES) \
+  $(filter $(addsuffix /%,$(addprefix host_sim/,campaign engine benchmark search soil_validation \
   ground_station/link ground_station/station ground_station/calibration run/experiment run/report run/comparison \
   render/chart render/report physics/vehicle/urdf)),$(HOST_SOURCES))
 
@@ -156,30 +167,33 @@ $(B)/headers/$(1).h.gch: tools/build/headers/$(2).h $(B)/host.flags
 	@mkdir -p $$(@D)
 	@echo "  CXX  $$< $$(SET_FLAGS)"
 	@cp $$< $$(@:.gch=)
-	@$$(CXX) @$(B)/host.flags $$(SET_FLAGS) $(if $(findstring clang,$(CXX)),-fpch-instantiate-templates) -x c++-header $$< -o $$@
+	@$$(CXX) @$(B)/host.flags $$(SET_FLAGS) $(if $(findstring clang,$(CXX)),-fpch-instantiate-templates) -x c++-header \
+	  $$< -o $$@
 endef
 $(eval $(call headers_of_set,host,host))
 $(eval $(call headers_of_set,cold,host))
 $(eval $(call headers_of_set,test,test))
 $(B)/headers/test.h.gch: tools/build/headers/host.h
 
-# ---- groups: neighbouring sources are compiled as one, since they share most of what they include -----------------------------------
+# ---- groups: neighbouring sources are compiled as one, since they share most of what they include --------------------
 
-# Kernels for several instruction sets give the same names; what mutation testing changes is compiled again and again; some need flags of
-# their own.
+# Kernels for several instruction sets give the same names; what mutation testing changes is compiled again and again;
+# some need flags of their own.
 ALONE := tools/command_line/% $(addsuffix /%,host_sim/physics/kernels host_sim/physics/particles nn/batch) \
          $(shell sed -nE 's/^((host_sim|nn)[^ ]*\.cpp) .*/\1/p' tools/mutants/targets.txt) \
          $(TINY_DNN_SOURCES) $(VECTOR_SOURCES) $(RSVG_SOURCES) $(SDL_SOURCES)
-# Sources a group, at most. Larger ones save less where the compiler optimises, and who changes one source waits for all of its group.
+# Sources a group, at most. Larger ones save less where the compiler optimises, and who changes one source waits for all
+# of its group.
 GROUP_host := 8
 GROUP_cold := 16
 GROUP_test := 24
-# $(call in_groups,SET,SOURCES,HEADERS,FLAGS,ALL): SET_OBJECTS are the objects of all of them. Tests' helpers, which are no *_test.cpp, stay
-# alone. Where SOURCES are a part of ALL, their groups are parts of its groups.
+# $(call in_groups,SET,SOURCES,HEADERS,FLAGS,ALL): SET_OBJECTS are the objects of all of them. Tests' helpers, which are
+# no *_test.cpp, stay alone. Where SOURCES are a part of ALL, their groups are parts of its groups.
 define in_groups
 $(call with_headers,$(3),$(2))
 $(1)_ALONE := $(filter $(ALONE),$(2)) $(filter tests/%,$(filter-out %_test.cpp,$(2)))
-$(1)_GROUPS := $$(shell printf '%s\n' $$(filter-out $(ALONE) $$($(1)_ALONE),$(or $(5),$(2))) | awk -v most=$(GROUP_$(3)) -v only="$(if $(5),$(2))" -f tools/build/groups.awk)
+$(1)_GROUPS := $$(shell printf '%s\n' $$(filter-out $(ALONE) $$($(1)_ALONE),$(or $(5),$(2))) | \
+  awk -v most=$(GROUP_$(3)) -v only="$(if $(5),$(2))" -f tools/build/groups.awk)
 $(1)_GROUP_OBJECTS := $$(foreach group,$$($(1)_GROUPS),$(B)/groups/$(1)/$$(firstword $$(subst :, ,$$(group))).o)
 $(1)_OBJECTS := $$($(1)_GROUP_OBJECTS) $$(call objects,$$($(1)_ALONE))
 $$($(1)_GROUP_OBJECTS): HEADER_SET = $(3)
@@ -193,12 +207,13 @@ $(B)/groups/%.cpp: tools/build/group.awk FORCE
 	@awk -f tools/build/group.awk $(filter-out %.awk FORCE,$^) | $(WRITE_CHANGED)
 $(B)/groups/%.o: $(B)/groups/%.cpp $(B)/host.flags | $(GENERATED)
 	@echo "  CXX  $(notdir $*)"
-	@$(CXX) @$(B)/host.flags $(GROUP_FLAGS) $(HEADERS_FLAGS) $(if $(findstring clang,$(CXX)),,-Wno-subobject-linkage) $(SET_FLAGS) -MMD -MP -c $< -o $@
+	@$(CXX) @$(B)/host.flags $(GROUP_FLAGS) $(HEADERS_FLAGS) $(if $(findstring clang,$(CXX)),,-Wno-subobject-linkage) \
+	  $(SET_FLAGS) -MMD -MP -c $< -o $@
 
 $(eval $(call in_groups,HOT,$(filter-out $(COLD_SOURCES),$(HOST_SOURCES)),host))
 $(eval $(call in_groups,COLD,$(COLD_SOURCES),cold))
 
-# ---- objects, library, program -------------------------------------------------------------------------------------------------
+# ---- objects, library, program ---------------------------------------------------------------------------------------
 
 $(call objects,$(CORE_SOURCES)): $(B)/%.o: %.cpp $(B)/firmware.flags | $(SCHEMA_HEADERS)
 	@mkdir -p $(@D)
@@ -235,8 +250,8 @@ level: $(SCREED) $(REPORT_PAGE)  ## the same, and a page with a time slider (ARG
 	@run=$(OUT)/level ; number=2 ; while [ -e $$run ] ; do run=$(OUT)/level-$$number ; number=$$((number + 1)) ; done ; \
 	  $(SCREED) sim host_sim/data/experiments/level_bed.ini --out $$run $(ARGS) && $(SCREED) report $$run
 
-# What `make install` makes below PREFIX. The program finds its data from where it lies itself (host_sim/core/data_folders.h), so the
-# tree may be moved.
+# What `make install` makes below PREFIX. The program finds its data from where it lies itself
+# (host_sim/core/data_folders.h), so the tree may be moved.
 INSTALLED_DATA := share/screed
 INSTALLED_DOC := share/doc/screed
 INSTALLED_RULES := lib/udev/rules.d/60-screed.rules
@@ -247,7 +262,8 @@ INSTALLED_FISH := share/fish/vendor_completions.d/screed.fish
 INSTALLED_MAN := share/man/man1
 # One word, since make takes blanks for the ends of names.
 INTO = $(if $(word 2,$(DESTDIR)$(PREFIX)),$(error PREFIX and DESTDIR: no blanks),$(DESTDIR)$(PREFIX))
-install: $(SCREED) $(SCHEMA_HEADERS) $(BUILD_ROOT)/report/page.html  ## install program, data, flash tool and docs (PREFIX=/usr/local)
+install:  ## install program, data, flash tool and docs (PREFIX=/usr/local)
+install: $(SCREED) $(SCHEMA_HEADERS) $(BUILD_ROOT)/report/page.html
 	install -D -m 755 -t $(INTO)/bin $(SCREED)
 	install -D -m 755 tools/flash/flash.py $(INTO)/bin/screed_flash
 	install -D -m 644 tools/flash/60-screed.rules $(INTO)/$(INSTALLED_RULES)
@@ -266,7 +282,7 @@ uninstall:  ## remove what `make install` made (PREFIX=/usr/local)
 	rm -rf $(addprefix $(INTO)/,bin/screed bin/screed_flash $(INSTALLED_RULES) $(INSTALLED_DATA) $(INSTALLED_DOC) \
 	  $(INSTALLED_BASH) $(INSTALLED_ZSH) $(INSTALLED_FISH)) $(wildcard $(INTO)/$(INSTALLED_MAN)/screed*.1)
 
-# ---- clangd --------------------------------------------------------------------------------------------------------------------
+# ---- clangd ----------------------------------------------------------------------------------------------------------
 
 # clangd looks for it in build/ by itself.
 .PHONY: compile-commands

@@ -19,5 +19,6 @@ $(SITE_CAMERA_TEST): TEST_LIBRARIES += $(OPENCV_LIBRARIES)
 $(SITE_CAMERA_TEST): $(B)/tests/camera/site_camera_test.o $(LIBRARY) $(B)/link.flags
 	$(call link_tests)
 
-test-camera: $(SCREED) $(SITE_CAMERA) $(SITE_CAMERA_TEST)  ## it, with a calibrated lens, rendered frames of a run and a robot at a port
+test-camera:  ## it, with a calibrated lens, rendered frames of a run and a robot at a port
+test-camera: $(SCREED) $(SITE_CAMERA) $(SITE_CAMERA_TEST)
 	@SCREED_PROGRAM=$(abspath $(SCREED)) SITE_CAMERA_PROGRAM=$(abspath $(SITE_CAMERA)) tests/run.sh $(SITE_CAMERA_TEST)

@@ -1,5 +1,5 @@
-# Broken relative links of Markdown pages (see check_links.sh). Anchors are made as GitHub makes them: lower case, punctuation
-# left out, spaces to hyphens, -1, -2, ... behind a heading that came before.
+# Broken relative links of Markdown pages (see check_links.sh). Anchors are made as GitHub makes them: lower case,
+# punctuation left out, spaces to hyphens, -1, -2, ... behind a heading that came before.
 
 function directory(path) { return match(path, /.*\//) ? substr(path, 1, RLENGTH - 1) : "." }
 

@@ -1,5 +1,6 @@
 #!/bin/bash
-# glossary.sh [FILE...]: private words of denied_words.txt in tracked text files (or in those named). Ends with 1 and a line a finding.
+# glossary.sh [FILE...]: private words of denied_words.txt in tracked text files (or in those named). Ends with 1 and a
+# line a finding.
 set -euo pipefail
 self=tools/lint
 mapfile -t files < <(if [ $# -gt 0 ]; then printf '%s\n' "$@"; else

@@ -1,5 +1,5 @@
-# Input: layers.txt, then lines "FILE INCLUDED". Says which includes a layer does not allow; writes the edges between folders, once
-# each, to the file named by `edges`.
+# Input: layers.txt, then lines "FILE INCLUDED". Says which includes a layer does not allow; writes the edges between
+# folders, once each, to the file named by `edges`.
 function folder(path) { return sub(/\/[^\/]*$/, "", path) ? path : "." }
 function within(path, prefix) { return path == prefix || index(path, prefix "/") == 1 }
 

@@ -1,6 +1,6 @@
 #!/bin/bash
-# one_class.sh: a class stands in one header. Two of one name in one namespace are one class to the linker, which takes the inline
-# functions and destructors of whichever it meets first; no compiler says so when no source includes both.
+# one_class.sh: a class stands in one header. Two of one name in one namespace are one class to the linker, which takes
+# the inline functions and destructors of whichever it meets first; no compiler says so when no source includes both.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -18,10 +18,12 @@ awk '
     if (name == "") next
     ++classes
     key = space name
-    if (key in stands && stands[key] != FILENAME) { print FILENAME ": " key " stands in " stands[key] " as well; one of them needs another name"; bad = 1 }
+    if (key in stands && stands[key] != FILENAME) { print FILENAME ": " key " stands in " stands[key] \
+      " as well; one of them needs another name"; bad = 1 }
     stands[key] = FILENAME
   }
   END {
-    if (classes < 100) { print "tools/lint/one_class.sh: finds " classes + 0 " classes in the headers; have their left margins moved?"; bad = 1 }
+    if (classes < 100) { print "tools/lint/one_class.sh: finds " classes + 0 \
+      " classes in the headers; have their left margins moved?"; bad = 1 }
     exit bad
   }' "${headers[@]}"

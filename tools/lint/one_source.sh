@@ -1,7 +1,8 @@
 #!/bin/bash
-# one_source.sh: facts that stand once. A source that lists three or more soil parameters or named soils beside their table, or that
-# names a board, repeats what is to be made from the table. Tests may: they say what must come out. And libraries whose headers cost a
-# compiler seconds: one source includes them, whatever the others need of them stands in a header of ours.
+# one_source.sh: facts that stand once. A source that lists three or more soil parameters or named soils beside their
+# table, or that names a board, repeats what is to be made from the table. Tests may: they say what must come out. And
+# libraries whose headers cost a compiler seconds: one source includes them, whatever the others need of them stands in
+# a header of ours.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -19,12 +20,14 @@ tables() {
 }
 
 for kind in 'soil parameter' 'named soil' board; do
-  tables | cut -f1 | grep -qx "$kind" || { echo "tools/lint/one_source.sh: finds no $kind; has its table moved?" >&2; exit 1; }
+  tables | cut -f1 | grep -qx "$kind" \
+    || { echo "tools/lint/one_source.sh: finds no $kind; has its table moved?" >&2; exit 1; }
 done
 
 status=0
 while read -r library source; do
-  found=$(grep -rlE "^# *include <$library/" --include='*.cpp' --include='*.h' firmware hal host_sim nn tools tests | grep -vx "$source") || continue
+  found=$(grep -rlE "^# *include <$library/" --include='*.cpp' --include='*.h' firmware hal host_sim nn tools tests |
+    grep -vx "$source") || continue
   sed "s|\$|: includes <$library/...>, which is for $source alone|" <<< "$found"
   status=1
 done <<'END'
@@ -33,7 +36,8 @@ nlohmann host_sim/core/json_text.cpp
 END
 
 mapfile -t sources < <(find firmware hal host_sim nn tools Makefile tests/*.mk tests/*/*.mk \
-  \( -name '*.cpp' -o -name '*.h' -o -name '*.mk' -o -name Makefile \) ! -path "$SOIL.*" ! -path tools/build/options.mk | LC_ALL=C sort)
+  \( -name '*.cpp' -o -name '*.h' -o -name '*.mk' -o -name Makefile \) ! -path "$SOIL.*" \
+  ! -path tools/build/options.mk | LC_ALL=C sort)
 awk -F '\t' -v soil="$SOIL" '
   function report(kind, instead) {
     if (count[kind] >= enough[kind]) {
@@ -47,7 +51,8 @@ awk -F '\t' -v soil="$SOIL" '
     if (file == "") return
     report("soil parameter", "use kSoilParameters of " soil ".h")
     report("named soil", "use soil_presets() of " soil ".h")
-    report("board", "use kDefaultBoard or board_names() of host_sim/run/experiment/board_table.h, in makefiles $(BOARD) or $(BOARDS)")
+    report("board", "use kDefaultBoard or board_names() of host_sim/run/experiment/board_table.h, " \
+      "in makefiles $(BOARD) or $(BOARDS)")
     delete seen
   }
   BEGIN { enough["soil parameter"] = 3; enough["named soil"] = 3; enough["board"] = 1 }

@@ -1,7 +1,7 @@
-# One text of several sources, for clang-tidy: most of a run goes into the headers, which they share, and the analyser looks at no function
-# of a file that is included. Each file is given twice, first to see which helpers' names (in anonymous namespaces, at the left margin,
-# where clang-format keeps them) stand in several files: these are told apart by a macro. A test's namespace gets a name, as in a group
-# (tools/build/group.awk).
+# One text of several sources, for clang-tidy: most of a run goes into the headers, which they share, and the analyser
+# looks at no function of a file that is included. Each file is given twice, first to see which helpers' names (in
+# anonymous namespaces, at the left margin, where clang-format keeps them) stand in several files: these are told apart
+# by a macro. A test's namespace gets a name, as in a group (tools/build/group.awk).
 function declared(line) {
   sub(/[(={;[].*/, "", line)
   sub(/ : .*/, "", line)  # base classes
@@ -21,7 +21,9 @@ again[FILENAME] == 1 && FILENAME ~ /^tests\/.*_test\.cpp$/ { next }
 again[FILENAME] == 1 {
   if (/^namespace \{$/) inside = 1
   else if (/^}  \/\/ namespace$/) inside = 0
-  else if (inside && /^[A-Za-z_]/ && !/^using [A-Za-z_0-9:]+;$/ && !/^(namespace|template|static_assert|using namespace|TEST|TEST_[FP]|TYPED_TEST|INSTANTIATE_[A-Z_]+|BENCHMARK[A-Z_]*)[^A-Za-z_0-9]/) {
+  else if (inside && /^[A-Za-z_]/ && !/^using [A-Za-z_0-9:]+;$/ &&
+           !/^(namespace|template|static_assert|using namespace)[^A-Za-z_0-9]/ &&
+           !/^(TEST|TEST_[FP]|TYPED_TEST|INSTANTIATE_[A-Z_]+|BENCHMARK[A-Z_]*)[^A-Za-z_0-9]/) {
     name = declared($0)
     if (name != "" && !((FILENAME, name) in own)) { own[FILENAME, name] = 1; ++files_with[name] }
   }

@@ -1,11 +1,13 @@
 #!/bin/bash
-# tidy.sh STAMP FLAGS CHECKS SOURCE...: clang-tidy over sources pasted into one (paste.awk), with the flags of a file and CHECKS behind those
-# of .clang-tidy. Of sources that do not compile together, each half is looked at. Makes STAMP when all are clean.
+# tidy.sh STAMP FLAGS CHECKS SOURCE...: clang-tidy over sources pasted into one (paste.awk), with the flags of a file
+# and CHECKS behind those of .clang-tidy. Of sources that do not compile together, each half is looked at. Makes STAMP
+# when all are clean.
 set -uo pipefail
 stamp=$1 flags=$2 checks=$3
 shift 3
 
-# The analyser gives up a function after so many steps: most of its time would go into what lies beyond, long functions of many branches.
+# The analyser gives up a function after so many steps: most of its time would go into what lies beyond, long functions
+# of many branches.
 # Firmware is looked at to the end.
 steps=4000
 case $flags in */firmware.flags | */avr.flags) steps=225000 ;; esac
@@ -20,7 +22,8 @@ tidy() {
 show() {
   touch "$stamp.cpp"
   awk -v pasted="$(basename "$stamp.cpp")" '
-    NR == FNR { if (/^#line /) { at[++count] = FNR; first[count] = $2; file[count] = substr($3, 2, length($3) - 2) } next }
+    NR == FNR { if (/^#line /) { at[++count] = FNR; first[count] = $2; file[count] = substr($3, 2, length($3) - 2) } \
+      next }
     /^[0-9]+ warnings? generated|^Suppressed|^Use -header-filter|^$/ { next }
     match($0, /^[^ :]*:[0-9]+:/) && index($0, pasted ":") {
       split(substr($0, 1, RLENGTH), part, ":")

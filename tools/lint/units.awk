@@ -1,5 +1,6 @@
-# Sources that clang-tidy looks at together: from words GROUP:SOURCE,SOURCE,... of tools/build/groups.awk, and SOURCE for one that is
-# compiled alone, makes words OBJECT,OBJECT:SOURCE,SOURCE of up to some sixty sources; `folder` is that of the groups' objects.
+# Sources that clang-tidy looks at together: from words GROUP:SOURCE,SOURCE,... of tools/build/groups.awk, and SOURCE
+# for one that is compiled alone, makes words OBJECT,OBJECT:SOURCE,SOURCE of up to some sixty sources; `folder` is that
+# of the groups' objects.
 function finish() { if (size) print objects ":" sources; size = 0; objects = sources = "" }
 {
   count = 1

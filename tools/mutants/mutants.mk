@@ -7,7 +7,8 @@ MUTANTS_WORK := $(BUILD_ROOT)/mutants
 # What mutants are linked with: for each program the arguments of the linker, and what its library is made of.
 MUTANTS_LINK = -Wl,--as-needed @$(B)/link.flags
 .PHONY: mutants test-mutants
-mutants: $(B)/tests/unit_tests $(if $(findstring --unit,$(ARGS)),,$(B)/tests/sitl_tests $(SCREED))  ## which small changes of the sources the tests notice (ARGS='--file supervisor --sample 20 --list')
+mutants:  ## which small changes of the sources the tests notice (ARGS='--file supervisor --sample 20 --list')
+mutants: $(B)/tests/unit_tests $(if $(findstring --unit,$(ARGS)),,$(B)/tests/sitl_tests $(SCREED))
 	@mkdir -p $(MUTANTS_WORK)
 	@rm -f $(MUTANTS_WORK)/*.link
 	@echo $(LIBRARY_OBJECTS) > $(MUTANTS_WORK)/library.objects

@@ -1,7 +1,7 @@
 // build.mjs OUT: the page of `screed report` as one file: page.html with style.css and the bundled scripts in it.
 //
-// Run in a folder that holds this folder's files and node_modules (report.mk). The data of a run takes the place of the mark that
-// page.html has for it.
+// Run in a folder that holds this folder's files and node_modules (report.mk). The data of a run takes the place of the
+// mark that page.html has for it.
 import { build } from 'esbuild';
 import { readFile, writeFile } from 'node:fs/promises';
 

@@ -1,8 +1,11 @@
-# The page of `screed report`: scripts and style in one file, bundled with three.js and uPlot. Included by the top Makefile.
+# The page of `screed report`: scripts and style in one file, bundled with three.js and uPlot. Included by the top
+# Makefile.
 #
-# npm takes the packages that package-lock.json names, by their hashes. The page is a product of the build: nothing of them is here.
+# npm takes the packages that package-lock.json names, by their hashes. The page is a product of the build: nothing of
+# them is here.
 
-REPORT_SOURCES := $(addprefix tools/report/,package.json package-lock.json build.mjs page.html style.css) $(sort $(wildcard tools/report/src/*.js))
+REPORT_SOURCES := $(addprefix tools/report/,package.json package-lock.json build.mjs page.html style.css) \
+  $(sort $(wildcard tools/report/src/*.js))
 REPORT_PAGE := $(BUILD_ROOT)/report/page.html
 REPORT_WORK := $(BUILD_ROOT)/report/work
 NPM_CI := npm ci --ignore-scripts --no-audit --no-fund --loglevel=error

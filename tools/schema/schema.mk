@@ -1,9 +1,11 @@
-# The schema of the radio's messages and what is made of it. Included by the top Makefile, before the first use of what it makes.
+# The schema of the radio's messages and what is made of it. Included by the top Makefile, before the first use of what
+# it makes.
 #
-#   firmware/protocol/screed.dbc -> build/generated/schema/values.h     names of values and flags, for the microcontroller and the host
+#   firmware/protocol/screed.dbc -> build/generated/schema/values.h names of values and flags, for the microcontroller
+#   and the host
 #                                    build/generated/schema/class_values.h  names of values that name classes, likewise
-#                                    build/generated/schema/classes.h    the headers of classes that values name, likewise
-#                                    build/generated/schema/messages.h   pack and unpack, likewise
+#                                    build/generated/schema/classes.h the headers of classes that values name, likewise
+#                                     build/generated/schema/messages.h   pack and unpack, likewise
 #                                    build/generated/schema/tables.h     names, units, scales, for the host
 #                                    build/generated/wireshark           a profile for Wireshark and tshark
 #

@@ -1,6 +1,7 @@
 #!/bin/bash
-# one_node.sh start|stop FOLDER: a Slurm cluster of this machine alone, for tests; needs Debian's slurm-wlm and munge, root, and no
-# systemd. `start` prints what to set: export SLURM_CONF=FOLDER/slurm.conf. A node is idle after about a second.
+# one_node.sh start|stop FOLDER: a Slurm cluster of this machine alone, for tests; needs Debian's slurm-wlm and munge,
+# root, and no systemd. `start` prints what to set: export SLURM_CONF=FOLDER/slurm.conf. A node is idle after about a
+# second.
 set -euo pipefail
 command=${1:-} folder=${2:-}
 [ -n "$folder" ] || { sed -n '2,3s/^# //p' "$0" >&2; exit 2; }
@@ -9,7 +10,8 @@ stop() {
   # Of tasks that still run, the processes that watch them: they hold the port of slurmd.
   local watcher name
   for watcher in $(pgrep slurmstepd || true); do
-    if { tr '\0' '\n' < "/proc/$watcher/environ"; } 2> /dev/null | grep -qxF "SLURM_CONF=$folder/slurm.conf"; then kill -9 "$watcher" || true; fi
+    if { tr '\0' '\n' < "/proc/$watcher/environ"; } 2> /dev/null |
+      grep -qxF "SLURM_CONF=$folder/slurm.conf"; then kill -9 "$watcher" || true; fi
   done
   local pid
   for name in slurmd slurmctld munged; do
@@ -66,7 +68,8 @@ CONF
   slurmctld -D -i > "$folder/slurmctld.out" 2>&1 &
   slurmd -D > "$folder/slurmd.out" 2>&1 &
   for _ in $(seq 150); do
-    timeout 5 sinfo --noheader --format=%t 2> /dev/null | grep -q '^idle$' && { echo "export SLURM_CONF=$SLURM_CONF"; return; }
+    timeout 5 sinfo --noheader --format=%t 2> /dev/null |
+      grep -q '^idle$' && { echo "export SLURM_CONF=$SLURM_CONF"; return; }
     sleep 0.2
   done
   echo "$0: no idle node; see $folder/slurmctld.log and slurmd.log" >&2

@@ -97,7 +97,7 @@ const std::vector<SoilPreset>& soil_presets() {
   // soft and viper: loose sands of rover studies, origin not verified; lete_sand, dry_sand, clay:
   // Wong, Theory of Ground Vehicles, table 2.3; ding_2011: the simulant of Ding et al., Journal of
   // Terramechanics 48(1), 2011; cmu_2022: C. Pavlov, A. Johnson, 2022. The stiffness of unloading
-  // is not in these sources: docs/soil.md tells where its order of magnitude comes from.
+  // is not in these sources: docs/studies/soil.md has its order of magnitude.
   static const std::vector<SoilPreset> presets = {
       {soil("soft", 0.2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 4e7), kLoam},
       {soil("viper", 2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 1e8), kLoam},

@@ -20,26 +20,41 @@ namespace screed {
 // clang-format off
 //  member              key              option             unit         min   max   default  meaning
 #define SCREED_SOIL_PARAMETERS(X) \
-  X(k_phi,              "k_phi",         "--k-phi",         "N/m^(n+2)", 0.0,  1e12, 2e6,   "Bekker's frictional modulus; left out: the preset's") \
-  X(k_c,                "k_c",           "--k-c",           "N/m^(n+1)", 0.0,  1e12, 0.0,   "Bekker's cohesive modulus") \
-  X(exponent,           "n",             "--exponent",      "",          0.1,  2.5,  1.1,   "Bekker's exponent of sinkage") \
+  X(k_phi,              "k_phi",         "--k-phi",         "N/m^(n+2)", 0.0,  1e12, 2e6, \
+    "Bekker's frictional modulus; left out: the preset's") \
+  X(k_c,                "k_c",           "--k-c",           "N/m^(n+1)", 0.0,  1e12, 0.0, \
+    "Bekker's cohesive modulus") \
+  X(exponent,           "n",             "--exponent",      "",          0.1,  2.5,  1.1, \
+    "Bekker's exponent of sinkage") \
   X(cohesion_pa,        "c",             "--cohesion",      "Pa",        0.0,  1e7,  0.0,   "cohesion") \
-  X(friction_deg,       "phi",           "--friction",      "deg",       0.0,  60.0, 30.0,  "angle of internal friction") \
-  X(shear_modulus_m,    "K",             "--shear-modulus", "m",         1e-5, 1.0,  0.01,  "Janosi-Hanamoto shear modulus") \
+  X(friction_deg,       "phi",           "--friction",      "deg",       0.0,  60.0, 30.0, \
+    "angle of internal friction") \
+  X(shear_modulus_m,    "K",             "--shear-modulus", "m",         1e-5, 1.0,  0.01, \
+    "Janosi-Hanamoto shear modulus") \
   X(elastic_pa_per_m,   "E",             "--elastic",       "Pa/m",      1e4,  1e12, 2e8,   "stiffness of unloading") \
   X(damping_pa_s_per_m, "R",             "--damping",       "Pa s/m",    0.0,  1e9,  0.0,   "damping of sinking") \
-  X(shear_damping_s,    "shear_damping", "--shear-damping", "s",         0.0,  0.1,  0.002, "damping of small shear, over its stiffness; 0.002 by default") \
+  X(shear_damping_s,    "shear_damping", "--shear-damping", "s",         0.0,  0.1,  0.002, \
+    "damping of small shear, over its stiffness; 0.002 by default") \
   X(repose_deg,         "repose",        "--repose",        "deg",       1.0,  60.0, 30.0,  "angle of repose") \
-  X(compaction,         "compaction",    "--compaction",    "",          0.0,  1.0,  0.0,   "share of the sunk volume that is compacted") \
-  X(compaction_depth_m, "compaction_depth", "--compaction-depth", "m",   0.0,  1.0,  0.0,   "how much a place may lose by compaction in all; 0: any") \
-  X(drag_depth_m,       "drag_depth",    "--drag-depth",    "m",         0.0,  1.0,  0.0,   "thickness of the layer that a slipping surface digs away") \
-  X(drag_share,         "drag_share",    "--drag-share",    "",          0.0,  1.0,  0.0,   "share of the surface's slip with which that layer goes along") \
+  X(compaction,         "compaction",    "--compaction",    "",          0.0,  1.0,  0.0, \
+    "share of the sunk volume that is compacted") \
+  X(compaction_depth_m, "compaction_depth", "--compaction-depth", "m",   0.0,  1.0,  0.0, \
+    "how much a place may lose by compaction in all; 0: any") \
+  X(drag_depth_m,       "drag_depth",    "--drag-depth",    "m",         0.0,  1.0,  0.0, \
+    "thickness of the layer that a slipping surface digs away") \
+  X(drag_share,         "drag_share",    "--drag-share",    "",          0.0,  1.0,  0.0, \
+    "share of the surface's slip with which that layer goes along") \
   X(slip_sinkage,       "slip_sinkage",  "--slip-sinkage",  "",          0.0,  2.0,  0.0,   "growth of n with slip") \
-  X(front_angle,        "c1",            "--c1",            "",          0.0,  0.9,  0.0,   "angle of a wheel's greatest stress over its entry angle, at slip 0; 0: below the axle") \
-  X(front_angle_driven, "c2",            "--c2",            "",          -0.9, 0.9,  0.0,   "growth of c1 with slip, driven") \
-  X(front_angle_braked, "c2_braked",     "--c2-braked",     "",          -0.9, 0.9,  0.0,   "growth of c1 with slip, braked") \
-  X(exit_angle,         "c3",            "--c3",            "",          0.0,  0.9,  0.0,   "angle at which a wheel leaves the soil, over its entry angle") \
-  X(density_kg_per_m3,  "density",       "--density",       "kg/m^3",    0.0,  5e3,  0.0,   "density, for the resistance of what is pushed ahead; 0: no such resistance")
+  X(front_angle,        "c1",            "--c1",            "",          0.0,  0.9,  0.0, \
+    "angle of a wheel's greatest stress over its entry angle, at slip 0; 0: below the axle") \
+  X(front_angle_driven, "c2",            "--c2",            "",          -0.9, 0.9,  0.0, \
+    "growth of c1 with slip, driven") \
+  X(front_angle_braked, "c2_braked",     "--c2-braked",     "",          -0.9, 0.9,  0.0, \
+    "growth of c1 with slip, braked") \
+  X(exit_angle,         "c3",            "--c3",            "",          0.0,  0.9,  0.0, \
+    "angle at which a wheel leaves the soil, over its entry angle") \
+  X(density_kg_per_m3,  "density",       "--density",       "kg/m^3",    0.0,  5e3,  0.0, \
+    "density, for the resistance of what is pushed ahead; 0: no such resistance")
 // clang-format on
 
 /// Bekker pressure-sinkage p = (k_c / b + k_phi) z^n with elastic unloading, Janosi-Hanamoto shear

@@ -2,11 +2,11 @@
 // Figure 5.3 and our own sections).
 //
 // Reading is strict: an unknown section or key, a value out of range or of the wrong kind ends with
-// one line that names file, line, key and what is allowed. docs/experiments.md lists every key; the
-// list is made from the same table.
+// one line that names file, line, key and what is allowed. `screed sim --keys` lists every key,
+// from the same table.
 //
-// A section is a file in sections/: its fields, and below them its keys. A new key is a field and a
-// row there.
+// A section is a struct in a file beside this one: its fields, and below them its keys. A new key
+// is a field and a row there.
 #pragma once
 
 #include <cstdint>

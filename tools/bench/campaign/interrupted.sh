@@ -1,7 +1,7 @@
 #!/bin/bash
-# interrupted.sh SCREED RUNS KILLS FOLDER: a campaign of short runs on rigid ground, once undisturbed and once killed so often, and
-# whether the merged files are equal. Every other kill is of a worker, the others of the whole campaign. Makes the figures of
-# docs/studies/campaigns.md.
+# interrupted.sh SCREED RUNS KILLS FOLDER: a campaign of short runs on rigid ground, once undisturbed and once killed so
+# often, and whether the merged files are equal. Every other kill is of a worker, the others of the whole campaign.
+# Makes the figures of docs/studies/campaigns.md.
 set -euo pipefail
 screed=$1 runs=$2 kills=$3 folder=$4
 mkdir -p "$folder"

@@ -1,6 +1,7 @@
 #!/bin/bash
-# bench_decode.sh SCREED TELEMETRY_LAB PROFILE FRAMES: how many frames a second `screed decode` and tshark read of one log. Wall clock,
-# the best of three runs of ours (tshark, which takes long, runs once), and the processor's time, which other programs disturb less.
+# bench_decode.sh SCREED TELEMETRY_LAB PROFILE FRAMES: how many frames a second `screed decode` and tshark read of one
+# log. Wall clock, the best of three runs of ours (tshark, which takes long, runs once), and the processor's time, which
+# other programs disturb less.
 set -euo pipefail
 screed=$1 lab=$2 profile=$3 frames=$4
 
@@ -33,6 +34,7 @@ command -v tshark > /dev/null || { echo "tshark is not installed: apt install ts
 mkdir -p "$folder/config/profiles"
 cp -r "$profile" "$folder/config/profiles/screed"
 export WIRESHARK_CONFIG_DIR=$folder/config
-measure "tshark, 3 signals" 1 tshark -C screed -r "$folder/radio.log" -T fields -e frame.time_epoch -e signal_pdu.attitude.roll \
+measure "tshark, 3 signals" 1 tshark -C screed -r "$folder/radio.log" -T fields -e frame.time_epoch \
+  -e signal_pdu.attitude.roll \
   -e signal_pdu.attitude.pitch -e signal_pdu.attitude.heading
 [ "$(wc -l < "$folder/out")" -eq "$frames" ]

@@ -20,12 +20,16 @@ function plotOf(box, curve, names) {
   const series = [{ label: 'time [s]', value: (plot, value) => (value === null ? '\u2013' : value.toFixed(1)) }];
   const bands = [];
   curve.cells.forEach((cell, i) => {
-    const edge = { label: `${names[i]}, interval`, class: 'band', width: 0, stroke: 'transparent', points: { show: false } };
-    series.push({ label: names[i], stroke: colorOf(i, count, false), width: 2, points: { show: false }, value: (plot, value) => (value === null ? '\u2013' : shortNumber(value)) }, edge, edge);
+    const edge = { label: `${names[i]}, interval`, class: 'band', width: 0, stroke: 'transparent',
+      points: { show: false } };
+    series.push({ label: names[i], stroke: colorOf(i, count, false), width: 2, points: { show: false },
+      value: (plot, value) => (value === null ? '\u2013' : shortNumber(value)) }, edge, edge);
     bands.push({ series: [3 * i + 3, 3 * i + 2], fill: colorOf(i, count, true) });
   });
   const width = () => Math.max(280, box.clientWidth - 20);
-  const plot = new uPlot({ width: width(), height: 320, series, bands, scales: { x: { time: false } }, cursor: { drag: { x: true, y: false }, y: false },
+  const plot = new uPlot(
+    { width: width(), height: 320, series, bands, scales: { x: { time: false } },
+      cursor: { drag: { x: true, y: false }, y: false },
                            axes: [axis('time [s]', 32), axis(`${curve.name} [${unit}]`, 64)] },
     [curve.times, ...curve.cells.flatMap((cell) => [cell.mean, cell.low, cell.high])], box);
   new ResizeObserver(() => plot.setSize({ width: width(), height: 320 })).observe(box);
@@ -33,10 +37,17 @@ function plotOf(box, curve, names) {
 
 function tableOf(curve, facts) {
   const end = curve.times[curve.times.length - 1];
-  const places = shares.map((share) => curve.times.findLastIndex((time) => time <= share * end + 1e-9)).filter((place) => place >= 0);
-  const interval = (cell, place) => (cell.low[place] === null ? null : element('span', { class: 'interval', 'data-low': cell.low[place], 'data-high': cell.high[place] }, `${shortNumber(cell.low[place])} to ${shortNumber(cell.high[place])}`));
+  const places = shares.map((share) =>
+    curve.times.findLastIndex((time) => time <= share * end + 1e-9)).filter((place) => place >= 0);
+  const interval = (cell, place) =>
+    (cell.low[place] === null ? null
+      : element('span', { class: 'interval', 'data-low': cell.low[place], 'data-high': cell.high[place] },
+        `${shortNumber(cell.low[place])} to ${shortNumber(cell.high[place])}`));
   return table([...facts.factors, ...places.flatMap((place) => [`${curve.times[place].toFixed(0)} s`, '95 %'])],
-    facts.cells.map(({ values }, i) => ({ name: `curve of cell ${i}`, cells: [...values, ...places.flatMap((place) => [figure(curve.cells[i].mean[place] ?? NaN), interval(curve.cells[i], place)])] })));
+    facts.cells.map(({ values }, i) =>
+      ({ name: `curve of cell ${i}`,
+        cells: [...values, ...places.flatMap((place) =>
+          [figure(curve.cells[i].mean[place] ?? NaN), interval(curve.cells[i], place)])] })));
 }
 
 /// `names`: of the cells.
@@ -55,8 +66,12 @@ export function curveSection(page, facts, names) {
     box.replaceChildren(plot, tableOf(curve, facts));
     plotOf(plot, curve, names);
   };
-  page.append(element('div', { class: 'controls' }, select('Curve', facts.curves.map((curve, i) => [i, curve.name.replaceAll('_', ' ')]), (value) => show(facts.curves[Number(value)]))),
-    element('p', { class: 'faint' }, 'Means over the seeds; the bands are their intervals (bootstrap, BCa, 95 %). A run that ended before keeps its last value: its ground stays as it was left.'), box);
+  page.append(element('div', { class: 'controls' },
+    select('Curve', facts.curves.map((curve, i) => [i, curve.name.replaceAll('_', ' ')]),
+      (value) => show(facts.curves[Number(value)]))),
+    element('p', { class: 'faint' },
+      'Means over the seeds; the bands are their intervals (bootstrap, BCa, 95 %). '
+      + 'A run that ended before keeps its last value: its ground stays as it was left.'), box);
   show(shown);
   onSchemeChange(() => show(shown));
 }

@@ -12,7 +12,8 @@ const points = (values) => Array.from(values, (value) => (Number.isNaN(value) ? 
 /// An axis of uPlot in the page's colours; `size` in pixels.
 export function axis(label, size) {
   const faint = styleColor('--faint');
-  return { label, labelSize: 20, size, stroke: faint, font: '12px system-ui, sans-serif', labelFont: '12px system-ui, sans-serif',
+  return { label, labelSize: 20, size, stroke: faint, font: '12px system-ui, sans-serif',
+    labelFont: '12px system-ui, sans-serif',
            grid: { stroke: styleColor('--line'), width: 1 }, ticks: { stroke: styleColor('--line') } };
 }
 
@@ -70,7 +71,8 @@ export class Curves {
       height,
       cursor: { sync: { key: sync.key, scales: ['x', null] }, drag: { x: true, y: false }, y: false },
       // All of the run where nothing is zoomed: the last sample of a curve may stand before its end.
-      scales: { x: { time: false, range: (plot, low, high) => (low === null || this.#isWhole(plot, low, high) ? this.range : [low, high]) } },
+      scales: { x: { time: false,
+        range: (plot, low, high) => (low === null || this.#isWhole(plot, low, high) ? this.range : [low, high]) } },
       hooks: { draw: [(plot) => this.#drawMarks(plot)], ready: [(plot) => this.#followClicks(plot)] },
     };
   }
@@ -92,11 +94,13 @@ export class Curves {
       const color = colors[(estimated && !dots ? estimates++ : truths++) % colors.length];
       return { label: it.label, stroke: color, width: 1.5, dash: estimated ? [5, 4] : undefined,
                points: { show: dots, size: panel.sparse ? 8 : 2.5, width: panel.sparse ? 1 : 0, fill: color },
-               paths: dots ? () => null : undefined, value: (plot, value) => (value === null ? '\u2013' : shortNumber(value)) };
+               paths: dots ? () => null : undefined,
+                 value: (plot, value) => (value === null ? '\u2013' : shortNumber(value)) };
     });
     const unit = panel.unit === '1' ? '\u2013' : panel.unit;
     const options = this.#options(190);
-    options.series = [{ label: 'time [s]', value: (plot, value) => (value === null ? '\u2013' : value.toFixed(2)) }, ...series];
+    options.series = [{ label: 'time [s]', value: (plot, value) => (value === null ? '\u2013' : value.toFixed(2)) },
+      ...series];
     options.axes = [axis('time [s]', 32), axis(`[${unit}]`, 56)];
     return new uPlot(options, panel.data, box);
   }
@@ -107,13 +111,16 @@ export class Curves {
     options.legend = { show: false };
     options.scales.y = { range: [0, panel.rows.length] };
     options.series = [{}, { show: false }];
-    options.axes = [axis('time [s]', 32), { ...axis('', 56), labelSize: 0, size: 76, grid: { show: false }, ticks: { show: false },
-      splits: panel.rows.map((row, i) => panel.rows.length - i - 0.5), values: () => panel.rows.map((row) => row.name) }];
+    options.axes = [axis('time [s]', 32),
+      { ...axis('', 56), labelSize: 0, size: 76, grid: { show: false }, ticks: { show: false },
+      splits: panel.rows.map((row, i) => panel.rows.length - i - 0.5),
+        values: () => panel.rows.map((row) => row.name) }];
     options.hooks.draw.unshift((plot) => this.#drawRows(plot, panel.rows));
     const plot = new uPlot(options, [[...this.range], [null, null]], box);
     const used = new Map();
     for (const row of panel.rows) for (const [, , state] of row.bands) used.set(row.text(state), row.color(state));
-    box.append(element('p', { class: 'faint' }, ...[...used].map(([text, color]) => element('span', { class: 'entry' }, swatch(color), text))));
+    box.append(element('p', { class: 'faint' },
+      ...[...used].map(([text, color]) => element('span', { class: 'entry' }, swatch(color), text))));
     return plot;
   }
 
@@ -128,7 +135,8 @@ export class Curves {
       for (const [begin, end, state] of row.bands) {
         const left = plot.valToPos(begin, 'x', true);
         ctx.fillStyle = row.color(state);
-        ctx.fillRect(left, plot.bbox.top + (i + 0.15) * row_px, Math.max(1, plot.valToPos(end, 'x', true) - left), 0.7 * row_px);
+        ctx.fillRect(left, plot.bbox.top + (i + 0.15) * row_px, Math.max(1, plot.valToPos(end, 'x', true) - left),
+          0.7 * row_px);
       }
     });
     ctx.restore();
@@ -164,7 +172,8 @@ export class Curves {
   }
 
   #box(title, unit) {
-    const box = element('div', { class: 'curve', 'data-title': title }, element('h3', {}, unit === '' ? title : `${title} [${unit}]`));
+    const box = element('div', { class: 'curve', 'data-title': title },
+      element('h3', {}, unit === '' ? title : `${title} [${unit}]`));
     this.parent.append(box);
     return box;
   }

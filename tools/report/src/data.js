@@ -1,4 +1,5 @@
-// The data of the page: facts as JSON, and blocks of numbers (zlib, base64), as the program writes them (host_sim/render/report).
+// The data of the page: facts as JSON, and blocks of numbers (zlib, base64), as the program writes them
+// (host_sim/render/report).
 
 export const facts = () => JSON.parse(document.getElementById('facts').textContent);
 

@@ -13,12 +13,14 @@ export function element(name, attributes = {}, ...children) {
 
 /// A labelled choice. `options`: [value, text]; `chosen`: the value at the start, the first one without.
 export function select(label, options, onChange, chosen) {
-  const made = element('select', { 'aria-label': label }, ...options.map(([value, text]) => element('option', { value, selected: value === chosen }, text)));
+  const made = element('select', { 'aria-label': label },
+    ...options.map(([value, text]) => element('option', { value, selected: value === chosen }, text)));
   made.addEventListener('change', () => onChange(made.value));
   return element('label', {}, label, made);
 }
 
-/// Rows of cells; a cell is text, an element, or { number, text } for a figure, which keeps all its digits in data-value.
+/// Rows of cells; a cell is text, an element, or { number, text } for a figure, which keeps all its digits in
+/// data-value.
 export function table(head, rows) {
   const cell = (kind, content) => {
     if (content !== null && typeof content === 'object' && 'number' in content) {
@@ -26,12 +28,17 @@ export function table(head, rows) {
     }
     return element(kind, {}, content ?? '');
   };
-  const numeric = (column) => rows.some((row) => row.cells[column] !== null && typeof row.cells[column] === 'object' && 'number' in row.cells[column]);
+  const numeric = (column) =>
+    rows.some((row) => row.cells[column] !== null && typeof row.cells[column] === 'object' &&
+      'number' in row.cells[column]);
   const parts = [];
   if (head !== null) {
-    parts.push(element('thead', {}, element('tr', {}, ...head.map((text, i) => element('th', { class: numeric(i) ? 'number' : undefined }, text)))));
+    parts.push(element('thead', {},
+      element('tr', {}, ...head.map((text, i) => element('th', { class: numeric(i) ? 'number' : undefined }, text)))));
   }
-  parts.push(element('tbody', {}, ...rows.map((row) => element('tr', { class: row.class, 'data-name': row.name }, ...row.cells.map((content) => cell('td', content))))));
+  parts.push(element('tbody', {},
+    ...rows.map((row) =>
+      element('tr', { class: row.class, 'data-name': row.name }, ...row.cells.map((content) => cell('td', content))))));
   return element('div', { class: 'scroll' }, element('table', {}, ...parts));
 }
 
@@ -49,7 +56,8 @@ export function shortNumber(number) {
 }
 
 /// The same without zeros at its end, for running text.
-export const plainNumber = (number) => (number === 0 ? '0' : String(Number(number.toPrecision(4))).replace('-', '\u2212'));
+export const plainNumber = (number) =>
+  (number === 0 ? '0' : String(Number(number.toPrecision(4))).replace('-', '\u2212'));
 
 export const seconds = (time) => `${time.toFixed(2)} s`;
 

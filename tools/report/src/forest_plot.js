@@ -1,4 +1,5 @@
-// Rows with a name, and beside each its figures as points with intervals, in columns of one axis each. SVG, coloured by the style sheet.
+// Rows with a name, and beside each its figures as points with intervals, in columns of one axis each. SVG, coloured by
+// the style sheet.
 import { plainNumber } from './elements.js';
 
 const rowHeight = 24;
@@ -46,15 +47,17 @@ function axis(group, scale, range, top, bottom, width, title, label) {
     svg('text', { x: (scale(range[0]) + scale(range[1])) / 2, y: bottom + 36, class: 'tick' }, label));
 }
 
-/// `rows`: names. `columns`: [{ title, label, zero, values: [{ mean, low, high, all }] }]: `all` are single values behind the mean, `zero` draws that
-/// line. A value may be null.
+/// `rows`: names. `columns`: [{ title, label, zero, values: [{ mean, low, high, all }] }]: `all` are single values
+/// behind the mean, `zero` draws that line. A value may be null.
 export function forestPlot(parent, rows, columns) {
   const width = Math.max(600, parent.clientWidth - 20);
   const names = Math.min(maxName, 30 + letter * Math.max(...rows.map((row) => row.length)));
   const columnWidth = (width - names) / columns.length - gap;
   const top = headHeight;
   const bottom = top + rows.length * rowHeight;
-  const root = svg('svg', { class: 'forest', width, height: bottom + axisHeight, role: 'img', 'aria-label': columns.map((column) => column.title).join(', ') });
+  const root = svg('svg',
+    { class: 'forest', width, height: bottom + axisHeight, role: 'img',
+      'aria-label': columns.map((column) => column.title).join(', ') });
   rows.forEach((row, i) => {
     const y = top + (i + 0.5) * rowHeight;
     root.append(svg('line', { x1: 0, x2: width, y1: y + rowHeight / 2, y2: y + rowHeight / 2, class: 'row' }));
@@ -65,7 +68,8 @@ export function forestPlot(parent, rows, columns) {
   columns.forEach((column, i) => {
     const left = names + i * (columnWidth + gap);
     const values = column.values.filter((value) => value !== null);
-    const range = rangeOf(values.flatMap((value) => [value.low, value.high, value.mean, ...(value.all ?? [])]), column.zero);
+    const range = rangeOf(values.flatMap((value) => [value.low, value.high, value.mean, ...(value.all ?? [])]),
+      column.zero);
     const scale = (number) => left + ((number - range[0]) / (range[1] - range[0])) * columnWidth;
     const group = svg('g', { 'data-column': column.title });
     axis(group, scale, range, top, bottom, columnWidth, column.title, column.label);
@@ -76,7 +80,8 @@ export function forestPlot(parent, rows, columns) {
       for (const single of value.all ?? []) {
         if (Number.isFinite(single)) group.append(svg('circle', { cx: scale(single), cy: y, r: 2.5, class: 'single' }));
       }
-      if (Number.isFinite(value.low)) group.append(svg('line', { x1: scale(value.low), x2: scale(value.high), y1: y, y2: y, class: 'interval' }));
+      if (Number.isFinite(value.low)) group.append(
+        svg('line', { x1: scale(value.low), x2: scale(value.high), y1: y, y2: y, class: 'interval' }));
       group.append(svg('circle', { cx: scale(value.mean), cy: y, r: 4.5, class: 'mean', 'data-row': row }));
     });
     root.append(group);

@@ -16,6 +16,7 @@ async function show() {
 }
 
 show().catch((error) => {
-  document.getElementById('page').append(element('p', { class: 'warning' }, `This page cannot be shown: ${error.message}`));
+  document.getElementById('page').append(
+    element('p', { class: 'warning' }, `This page cannot be shown: ${error.message}`));
   throw error;
 });

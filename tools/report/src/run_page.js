@@ -23,28 +23,37 @@ class StopRows {
 }
 
 function identity(facts) {
-  return table(null, facts.identity.map(({ name, value }) => ({ name, cells: [element('span', { class: 'faint' }, name), String(value)] })));
+  return table(null, facts.identity.map(({ name, value }) =>
+    ({ name, cells: [element('span', { class: 'faint' }, name), String(value)] })));
 }
 
 function figures(list, more = []) {
-  const rows = list.map(({ name, unit, value }) => ({ name, cells: [element('span', { class: 'faint' }, name), figure(value), unit] }));
-  return table(null, [...rows, ...more.map(([name, text]) => ({ name, cells: [element('span', { class: 'faint' }, name), text, ''] }))]);
+  const rows = list.map(({ name, unit, value }) =>
+    ({ name, cells: [element('span', { class: 'faint' }, name), figure(value), unit] }));
+  return table(null, [...rows,
+    ...more.map(([name, text]) => ({ name, cells: [element('span', { class: 'faint' }, name), text, ''] }))]);
 }
 
 /// The same of several robots, a column each.
 function figuresByRobot(robots, ends) {
   const name = (text) => element('span', { class: 'faint' }, text);
-  const rows = robots[0].figures.map((it, i) => ({ name: it.name, cells: [name(it.name), ...robots.map((robot) => figure(robot.figures[i].value)), it.unit] }));
-  return table(['', ...robots.map((robot) => robot.name), ''], [...rows, ...ends.map(([title, key]) => ({ name: title, cells: [name(title), ...robots.map((robot) => robot[key]), ''] }))]);
+  const rows = robots[0].figures.map((it, i) =>
+    ({ name: it.name, cells: [name(it.name), ...robots.map((robot) => figure(robot.figures[i].value)), it.unit] }));
+  return table(['', ...robots.map((robot) => robot.name), ''],
+    [...rows, ...ends.map(([title, key]) =>
+      ({ name: title, cells: [name(title), ...robots.map((robot) => robot[key]), ''] }))]);
 }
 
 function header(page, facts) {
   page.append(element('h1', {}, facts.title));
-  if (!facts.complete) page.append(element('p', { class: 'warning' }, 'The recorded run did not end: this is what was written until then.'));
+  if (!facts.complete) page.append(
+    element('p', { class: 'warning' }, 'The recorded run did not end: this is what was written until then.'));
   const { robots } = facts;
   const ends = [['State at the end', 'state'], ['Faults at the end', 'faults']];
-  const of = robots.length > 1 ? figuresByRobot(robots, ends) : figures(robots[0].figures, ends.map(([name, key]) => [name, robots[0][key]]));
-  page.append(element('div', { class: 'columns' }, identity(facts), element('div', {}, of, facts.terrain?.change ? figures(facts.terrain.change) : null)));
+  const of = robots.length > 1 ? figuresByRobot(robots, ends)
+    : figures(robots[0].figures, ends.map(([name, key]) => [name, robots[0][key]]));
+  page.append(element('div', { class: 'columns' }, identity(facts),
+    element('div', {}, of, facts.terrain?.change ? figures(facts.terrain.change) : null)));
 }
 
 function legend(facts, view) {
@@ -56,7 +65,9 @@ function legend(facts, view) {
   for (const robot of view.robots) for (const state of robot.track.states) states.add(state);
   const box = element('div', { class: 'legend' }, title, bar, ends,
     element('div', { style: 'margin-top: 6px' }, 'driven path, by leveling state'),
-    ...[...states].sort((a, b) => a - b).map((state) => element('div', {}, swatch(facts.leveling_states[state]?.color ?? '#888'), facts.leveling_states[state]?.name ?? `state ${state}`)));
+    ...[...states].sort((a, b) => a - b).map((state) =>
+      element('div', {}, swatch(facts.leveling_states[state]?.color ?? '#888'),
+        facts.leveling_states[state]?.name ?? `state ${state}`)));
   const show = (byChange) => {
     const colors = byChange ? terrain.change_colors : terrain.height_colors;
     bar.style.background = `linear-gradient(to right, ${colors.map((rgb) => `rgb(${rgb.join(' ')})`).join(', ')})`;
@@ -70,11 +81,15 @@ function legend(facts, view) {
 
 function terrainNotes(terrain, view) {
   const grid = terrain.merged > 1
-    ? `Each height is the mean of ${terrain.merged} \u00d7 ${terrain.merged} heights of the run's grid (${plainNumber(1000 * terrain.spacing_m)} mm).`
+    ? `Each height is the mean of ${terrain.merged} \u00d7 ${terrain.merged} heights of the run's grid `
+      + `(${plainNumber(1000 * terrain.spacing_m)} mm).`
     : `The run's own grid of ${plainNumber(1000 * terrain.spacing_m)} mm.`;
   const notes = [`${grid} Heights are rounded to ${plainNumber(1000 * terrain.unit_m)} mm.`];
-  if (terrain.filtered) notes.push('The surface of a bed of particles is shown without single stones (low-pass of one particle radius).');
-  if (!terrain.recorded) notes.push('The heights of the ticks were not recorded (sim --heights, record): the terrain is that before the run until its end.');
+  if (terrain.filtered) notes.push(
+    'The surface of a bed of particles is shown without single stones (low-pass of one particle radius).');
+  if (!terrain.recorded) notes.push(
+    'The heights of the ticks were not recorded (sim --heights, record): '
+    + 'the terrain is that before the run until its end.');
   if (view === null) notes.push('This browser has no WebGL: there is no picture of the terrain.');
   return element('p', { class: 'faint' }, notes.join(' '));
 }
@@ -135,7 +150,8 @@ async function terrainSection(page, facts, timeline, rows) {
   page.append(box, controls);
   const heights = await Heights.load(terrain);
   const tracks = await Promise.all(facts.robots.map(async ({ track }) => ({
-    rows: await words(`${track.block}-rows`), places: await floats(`${track.block}-places`), states: await words(`${track.block}-states`) })));
+    rows: await words(`${track.block}-rows`), places: await floats(`${track.block}-places`),
+      states: await words(`${track.block}-states`) })));
   let view = null;
   try {
     view = new TerrainView(box, facts, heights, tracks);
@@ -160,7 +176,8 @@ async function terrainSection(page, facts, timeline, rows) {
     reset.addEventListener('click', () => view.resetCamera());
     above.addEventListener('click', () => view.resetCamera(true));
     controls.append(
-      select('Terrain', [['time', 'at the slider\u2019s time'], ['before', 'before the run'], ['after', 'after the run']], (value) => {
+      select('Terrain', [['time', 'at the slider\u2019s time'], ['before', 'before the run'],
+        ['after', 'after the run']], (value) => {
         moment = value;
         timeline.show(timeline.stop);
       }),
@@ -168,7 +185,8 @@ async function terrainSection(page, facts, timeline, rows) {
         view.setByChange(value === 'change');
         shown.show(value === 'change');
       }),
-      select('Heights', [1, 2, 5, 10].map((times) => [times, `${times} \u00d7`]), (value) => view.setExaggeration(Number(value))),
+      select('Heights', [1, 2, 5, 10].map((times) => [times, `${times} \u00d7`]),
+        (value) => view.setExaggeration(Number(value))),
       reset, above);
   }
   page.append(terrainNotes(terrain, view));
@@ -179,10 +197,12 @@ function rowSection(page, facts, timeline, rows) {
   rows.forEach((it, robot) => {
     const title = facts.robots.length > 1 ? `, ${facts.robots[robot].name}` : '';
     const cells = it.columns.map(() => element('td', { class: 'number' }));
-    const body = it.columns.map((column, i) => element('tr', { 'data-column': column.name }, element('td', {}, column.name), cells[i],
+    const body = it.columns.map((column, i) =>
+      element('tr', { 'data-column': column.name }, element('td', {}, column.name), cells[i],
       element('td', {}, column.unit), element('td', { class: 'faint' }, column.meaning)));
     const row = element('span', {});
-    page.append(element('details', { class: 'row' }, element('summary', {}, `All figures at the slider\u2019s time${title}`),
+    page.append(element('details', { class: 'row' },
+      element('summary', {}, `All figures at the slider\u2019s time${title}`),
       element('p', { class: 'faint' }, 'Row ', row, ' of frames.csv (screed session export --csv --all), rows from 0.'),
       element('div', { class: 'scroll' }, element('table', {}, element('tbody', {}, ...body)))));
     timeline.listeners.push((stop, number) => {
@@ -198,20 +218,27 @@ function rowSection(page, facts, timeline, rows) {
 
 async function curveSection(page, facts, timeline) {
   page.append(element('h2', {}, 'Curves'),
-    element('p', { class: 'faint' }, 'Drag to zoom, double-click to see all, click to move the slider. The blue line is the slider\u2019s time, dotted lines are events, dashed curves are estimates of the firmware.'));
+    element('p', { class: 'faint' },
+      'Drag to zoom, double-click to see all, click to move the slider. '
+      + 'The blue line is the slider\u2019s time, dotted lines are events, '
+      + 'dashed curves are estimates of the firmware.'));
   for (const robot of facts.robots) {
     if (facts.robots.length > 1) page.append(element('h3', {}, robot.name));
     if (robot.bucket_ticks > 1) {
-      page.append(element('p', { class: 'faint' }, `Of each ${robot.bucket_ticks} ticks (${plainNumber(robot.bucket_ticks * facts.tick_s)} s) the lowest and the highest value is drawn.`));
+      page.append(element('p', { class: 'faint' },
+        `Of each ${robot.bucket_ticks} ticks (${plainNumber(robot.bucket_ticks * facts.tick_s)} s) `
+        + 'the lowest and the highest value is drawn.'));
     }
     const box = element('div', {});
     page.append(box);
     const curves = new Curves(box, robot.events.map((event) => event.time_s), (time) => timeline.showTime(time));
     curves.addBands('States', [
-      { name: 'leveling', bands: robot.leveling, color: (state) => facts.leveling_states[state]?.color ?? '#888', text: (state) => facts.leveling_states[state]?.name ?? `state ${state}` },
+      { name: 'leveling', bands: robot.leveling, color: (state) => facts.leveling_states[state]?.color ?? '#888',
+        text: (state) => facts.leveling_states[state]?.name ?? `state ${state}` },
     ]);
     await curves.add(robot.panels, readFloats);
-    if (robot === facts.robots[0] && facts.terrain !== null) await curves.add(facts.terrain.curves, readDoubles, !facts.terrain.recorded);
+    if (robot === facts.robots[0] && facts.terrain !== null) await curves.add(facts.terrain.curves, readDoubles,
+      !facts.terrain.recorded);
     curves.draw();
     timeline.listeners.push((stop, row, time) => curves.setTime(time));
   }
@@ -225,14 +252,18 @@ function eventSection(page, facts, timeline) {
       button.addEventListener('click', () => timeline.showTime(event.time_s));
       return { cells: [button, event.text] };
     });
-    page.append(rows.length > 0 ? table(['time', facts.robots.length > 1 ? robot.name : 'supervisor state or fault'], rows) : element('p', {}, 'None.'));
+    page.append(rows.length > 0
+      ? table(['time', facts.robots.length > 1 ? robot.name : 'supervisor state or fault'], rows)
+      : element('p', {}, 'None.'));
   }
 }
 
 function terrainFigures(page, facts) {
   if (!facts.terrain?.figures) return;
   page.append(element('h2', {}, 'Terrain before and after'),
-    table(['', 'before', 'after', 'unit'], facts.terrain.figures.map(({ name, unit, before, after }) => ({ name, cells: [name, figure(before), figure(after), unit] }))),
+    table(['', 'before', 'after', 'unit'],
+      facts.terrain.figures.map(({ name, unit, before, after }) =>
+        ({ name, cells: [name, figure(before), figure(after), unit] }))),
     element('p', { class: 'faint' }, `A cell is flat up to ${facts.terrain.flat_deg}\u00b0.`));
 }
 
@@ -243,14 +274,17 @@ function configurationSection(page, facts) {
     if (!sections.has(section)) sections.set(section, []);
     sections.get(section).push({ cells: [key, value] });
   }
-  page.append(element('div', { class: 'columns' }, ...[...sections].map(([section, rows]) => element('div', {}, element('h3', {}, `[${section}]`), table(null, rows)))));
+  page.append(element('div', { class: 'columns' },
+    ...[...sections].map(([section, rows]) =>
+      element('div', {}, element('h3', {}, `[${section}]`), table(null, rows)))));
   const changed = facts.parameters.filter((it) => it.value !== it.default).length;
   page.append(element('h2', {}, 'Parameters of the firmware'),
     element('p', { class: 'faint' }, `${changed} of ${facts.parameters.length} differ from their defaults (bold).`),
     element('details', {}, element('summary', {}, 'All parameters'),
       table(['name', 'value', 'default', 'unit', 'meaning'], facts.parameters.map((it) => ({
         class: it.value !== it.default ? 'changed' : undefined, name: it.name,
-        cells: [it.name, it.recorded ? { number: it.value, text: String(it.value) } : 'not recorded', { number: it.default, text: String(it.default) }, it.unit, it.meaning] })))));
+        cells: [it.name, it.recorded ? { number: it.value, text: String(it.value) } : 'not recorded',
+          { number: it.default, text: String(it.default) }, it.unit, it.meaning] })))));
 }
 
 export async function showRun(page, facts) {

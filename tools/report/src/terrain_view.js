@@ -36,7 +36,8 @@ function tickStep(span) {
 }
 
 function colorTable(rgb) {
-  return rgb.map(([red, green, blue]) => new THREE.Color().setRGB(red / 255, green / 255, blue / 255, THREE.SRGBColorSpace));
+  return rgb.map(([red, green, blue]) =>
+    new THREE.Color().setRGB(red / 255, green / 255, blue / 255, THREE.SRGBColorSpace));
 }
 
 /// The grid of heights as a mesh whose vertices are coloured.
@@ -67,7 +68,8 @@ class Surface {
       }
     }
     this.geometry.setIndex(new THREE.BufferAttribute(index, 1));
-    this.mesh = new THREE.Mesh(this.geometry, new THREE.MeshLambertMaterial({ vertexColors: true, side: THREE.DoubleSide }));
+    this.mesh = new THREE.Mesh(this.geometry,
+      new THREE.MeshLambertMaterial({ vertexColors: true, side: THREE.DoubleSide }));
     this.mesh.frustumCulled = false;
   }
 
@@ -142,7 +144,8 @@ class RobotModel {
       part(robot.boxes.hull, 0xd8432b);
       // The nose.
       const { hull } = robot.boxes;
-      part({ ...hull, back: hull.front - 0.25 * (hull.front - hull.back), bottom: hull.top, top: hull.top + 0.008 }, 0xffffff);
+      part({ ...hull, back: hull.front - 0.25 * (hull.front - hull.back), bottom: hull.top, top: hull.top + 0.008 },
+        0xffffff);
     } else {
       part({ back: -0.05, front: 0.05, left: 0.05, right: -0.05, bottom: -0.05, top: 0.05 }, 0xd8432b);
     }
@@ -155,7 +158,8 @@ class RobotModel {
     const up = (i) => (places[3 * i + 2] - ride_m) * exaggeration + ride_m;
     this.segments.forEach((end, i) => {
       const start = end - 1;
-      corners.set([places[3 * start], places[3 * start + 1], up(start), places[3 * end], places[3 * end + 1], up(end)], 6 * i);
+      corners.set([places[3 * start], places[3 * start + 1], up(start), places[3 * end], places[3 * end + 1], up(end)],
+        6 * i);
     });
     if (this.segments.length === 0) return;
     this.line.geometry.dispose();
@@ -252,7 +256,8 @@ export class TerrainView {
     }
     text('x, east [m]', (west + east) / 2, south - 2.8 * letter);
     text('y, north [m]', west - 4.2 * letter, (south + north) / 2);
-    this.axes.add(new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({ color: faint })));
+    this.axes.add(new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(points),
+      new THREE.LineBasicMaterial({ color: faint })));
   }
 
   /// From the south-west, or from above.
@@ -287,8 +292,8 @@ export class TerrainView {
     this.update(this.row, this.poses, true);
   }
 
-  /// Shows the heights as they are, the paths up to `row` and the robots at `poses` (x, y, z, roll, pitch, yaw). `changed`: the
-  /// surface is to be drawn anew.
+  /// Shows the heights as they are, the paths up to `row` and the robots at `poses` (x, y, z, roll, pitch, yaw).
+  /// `changed`: the surface is to be drawn anew.
   update(row, poses, changed) {
     this.row = row;
     this.poses = poses;
