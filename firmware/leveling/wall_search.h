@@ -3,7 +3,8 @@
 // It is lost when the standard deviation of its position along an axis exceeds the parameter
 // lost_sigma. Then it stops with the fault lost, or seeks a wall, as the parameter lost_action
 // says: it drives along the axis it knows least about, towards the wall that it believes nearer,
-// until that has told it where it is (position_estimate.h) and the deviation is below half of lost_sigma.
+// until that has told it where it is (position_estimate.h) and the deviation is below half of
+// lost_sigma.
 #pragma once
 
 #include <stdint.h>

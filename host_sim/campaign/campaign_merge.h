@@ -43,8 +43,8 @@ ValueTable curve_table(const CampaignPlan& plan, const ResultIndex& results);
 ///   campaign.h5     the same as datasets, one a column, in the groups runs and curves
 ///   provenance.csv  a row a run: version, arithmetic, host, begin, duration, attempt; differs from
 ///                   time to time
-/// Answers how many runs each arithmetic made (session_layout.h). Throws RunError when a file cannot be
-/// written.
+/// Answers how many runs each arithmetic made (session_layout.h). Throws RunError when a file
+/// cannot be written.
 std::map<std::string, size_t> merge_results(const CampaignPlan& plan, const ResultIndex& results,
                                             const CampaignFolder& folder);
 

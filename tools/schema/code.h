@@ -26,12 +26,10 @@ std::string made_from(const Database& database);
 
 // The messages as tables for the host (host_sim/ground_station/telemetry/schema.h).
 
-
 /// The header schema/tables.h of a checked database.
 std::string host_tables(const Database& database);
 
 // Names of values and flags as C++14 enumerations.
-
 
 /// The header schema/values.h of a checked schema: an enumeration for every signal with names of
 /// values (VAL_), one for every field of flags. It includes nothing of the project, so that every
@@ -48,7 +46,6 @@ std::string class_includes(const Database& database);
 
 // The messages as C++14 for the microcontroller and the host: a structure each, with pack() and
 // unpack(). The code holds no tables, no loops and no text.
-
 
 /// The header schema/messages.h of a checked database.
 std::string message_code(const Database& database);

@@ -17,7 +17,6 @@ std::string renewed_page(const std::string& file, const std::string& page,
 //
 // Source: Wireshark 4.0, epan/dissectors/packet-signal-pdu.c and its descriptions of the tables.
 
-
 /// The files of the profile of a checked database: name and text. The ids of all 15 robots lead to
 /// the messages.
 std::map<std::string, std::string> wireshark_tables(const Database& database);

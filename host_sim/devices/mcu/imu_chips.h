@@ -74,7 +74,6 @@ class I2cChip : public I2cDevice {
 // LSM303D. Anti-alias and low-pass filters are accepted and have no effect: what the sensors feel
 // has been averaged already (host_sim/physics/world/plant.h).
 
-
 /// Output registers of a sensor with three axes behind one status register.
 class VectorOutput {
  public:

@@ -58,9 +58,9 @@ namespace screed {
 // clang-format on
 
 /// Bekker pressure-sinkage p = (k_c / b + k_phi) z^n with elastic unloading, Janosi-Hanamoto shear
-/// tau = (c + p tan phi) (1 - exp(-j / K)), j along the running surface (shear_field.h). With slip s
-/// the exponent is n + slip_sinkage |s| (Ding et al. 2011). Below a wheel the greatest stress is at
-/// (c1 + c2 s) times the entry angle, and contact ends at -c3 times it (soil_laws.h). What is
+/// tau = (c + p tan phi) (1 - exp(-j / K)), j along the running surface (shear_field.h). With slip
+/// s the exponent is n + slip_sinkage |s| (Ding et al. 2011). Below a wheel the greatest stress is
+/// at (c1 + c2 s) times the entry angle, and contact ends at -c3 times it (soil_laws.h). What is
 /// pushed ahead resists by its density (soil_laws.h).
 /// Sources: M. G. Bekker, Introduction to Terrain-Vehicle Systems, 1969; Z. Janosi, B. Hanamoto,
 /// 1961; J. Y. Wong, A. R. Reece, Journal of Terramechanics 4, 1967; J. Y. Wong, Theory of Ground

@@ -96,7 +96,6 @@ std::size_t ImageCalls::section_at(std::uint32_t address) const {
   return address < sections_[i].begin + sections_[i].size ? i : sections_.size();
 }
 
-
 namespace {
 
 constexpr double kFirstTemperature = 3.0;

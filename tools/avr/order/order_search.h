@@ -60,7 +60,6 @@ class ImageCalls {
 
 // Searches an order of an image's functions with few long calls.
 
-
 struct FunctionOrder {
   std::vector<std::size_t> sections;  ///< as ImageCalls::order()
   int long_calls;

@@ -37,7 +37,6 @@ class ConstantRegisters {
 // What is known of the register pair Y (r28, r29) while a function runs: gcc makes and drops stack
 // frames by computing in Y and writing the result to the stack pointer.
 
-
 class FramePointer {
  public:
   /// Follows one instruction that is executed at a stack height (bytes pushed since the entry),

@@ -27,7 +27,6 @@ ImageSize read_image_size(std::istream& in);
 // Names are demangled, without the " [clone ...]" that the compiler may add. A target that ends in
 // * stands for every symbol that begins so; a target must exist in the image.
 
-
 /// Targets by function; empty: never reached.
 using IndirectCalls = std::map<std::string, std::vector<std::string>>;
 

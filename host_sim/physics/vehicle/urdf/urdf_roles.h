@@ -40,7 +40,6 @@ std::vector<Eigen::Isometry3d> link_poses(const Outline& outline, int chassis,
 
 // Which links of a URDF file are the chassis, the wheels and the IMU. Part of urdf_importer.
 
-
 /// Links as indices: [left, right][front, rear].
 using WheelLinks = std::array<std::array<int, 2>, 2>;
 
