@@ -204,10 +204,10 @@ std::string summary_json(const SimulationSummary& summary) {
   return json_of(summary).dump(2) + "\n";
 }
 
-std::string summary_json_with_folder(const SimulationSummary& summary) {
+Json summary_json_with_folder(const SimulationSummary& summary) {
   Json json = {{"run_folder", summary.folder.string()}};
   json.update(json_of(summary));
-  return json.dump(2) + "\n";
+  return json;
 }
 
 }  // namespace screed

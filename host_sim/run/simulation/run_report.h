@@ -91,7 +91,7 @@ Json json_of(const TerrainChange& change);
 /// time nor folders. Same run, same bytes, in whatever folder.
 std::string summary_json(const SimulationSummary& summary);
 
-/// The same, with the run folder as well: for a program that has started the run.
-std::string summary_json_with_folder(const SimulationSummary& summary);
+/// The same, with the run folder as well: for whoever has started the run.
+Json summary_json_with_folder(const SimulationSummary& summary);
 
 }  // namespace screed

@@ -1,12 +1,9 @@
 // `screed campaign merge FOLDER`: the results of a campaign as files for other programs.
-#include <cstdio>
-#include <iostream>
-#include <memory>
 #include <string>
 
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/json.h"
+#include "host_sim/core/figures.h"
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/cli/command.h"
 
@@ -32,16 +29,13 @@ int run_merge(const MergeArguments& arguments) {
   }
   merge_and_note(plan, results, folder);
   if (arguments.json) {
-    std::cout << Json({{"folder", arguments.folder},
-                       {"runs", count.runs},
-                       {"done", count.done},
-                       {"failed", count.failed},
-                       {"missing", count.missing()}})
-                     .dump(2)
-              << "\n";
+    print_json({{"folder", arguments.folder},
+                {"runs", count.runs},
+                {"done", count.done},
+                {"failed", count.failed},
+                {"missing", count.missing()}});
   } else {
-    std::printf("%s: %s; %s\n", plan.settings.name.c_str(), count.text().c_str(),
-                (folder.path / "campaign.h5").c_str());
+    print("{}: {}; {}\n", plan.settings.name, count.text(), folder.path / "campaign.h5");
   }
   return 0;
 }
@@ -49,15 +43,13 @@ int run_merge(const MergeArguments& arguments) {
 }  // namespace
 
 void register_campaign_merge_command(Command& campaign, Program& program) {
-  auto arguments = std::make_shared<MergeArguments>();
-  Command* command = campaign.add_subcommand(
-      "merge", "Write the results of a campaign as HDF5 and CSV, one row per run");
-  command->add_option("FOLDER", arguments->folder, "Folder of the campaign")->required();
-  command->add_flag("--incomplete", arguments->incomplete,
-                    "Merge although runs are missing or failed; their figures are left empty");
-  command->add_flag("--json", arguments->json, "Print JSON");
-  command->callback(
-      [arguments, &program] { program.action = [arguments] { return run_merge(*arguments); }; });
+  auto [command, arguments] = add_subcommand<MergeArguments>(
+      campaign, program, "merge",
+      "Write the results of a campaign as HDF5 and CSV, one row per run", run_merge);
+  command.add_option("FOLDER", arguments.folder, "Folder of the campaign")->required();
+  command.add_flag("--incomplete", arguments.incomplete,
+                   "Merge although runs are missing or failed; their figures are left empty");
+  command.add_flag("--json", arguments.json, "Print JSON");
 }
 
 }  // namespace screed

@@ -2,10 +2,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -13,7 +11,7 @@
 #include <system_error>
 
 #include "host_sim/campaign/campaign_file.h"
-#include "host_sim/core/json.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/engine/worker_pool.h"
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/cli/command.h"
@@ -89,28 +87,12 @@ std::vector<std::string> levels_of(const CampaignPlan& plan, size_t factor) {
   return levels;
 }
 
-std::string levels_text(const std::vector<std::string>& levels) {
+std::string levels_text(const Json& levels) {
   std::string text;
   for (size_t i = 0; i < std::min(levels.size(), kLevelsShown); ++i)
-    text += (i == 0 ? "" : ", ") + levels[i];
+    text += (i == 0 ? "" : ", ") + levels[i].text();
   if (levels.size() > kLevelsShown) text += ", ... (" + std::to_string(levels.size()) + " values)";
   return text;
-}
-
-void print_table(const CampaignPlan& plan, const std::optional<Cost>& cost) {
-  std::printf("%s: %zu cells x %zu seeds = %zu runs\n", plan.settings.name.c_str(),
-              plan.cells.size(), plan.seed_count(), plan.run_count());
-  for (size_t i = 0; i < plan.factors.size(); ++i)
-    std::printf("  %-34s %s\n", plan.factors[i].heading.c_str(),
-                levels_text(levels_of(plan, i)).c_str());
-  std::printf("  %-34s %s\n", "kept of a run", keep_name(plan.settings.keep));
-  std::printf("  %-34s %.3g h\n", "simulated time", simulated_hours(plan));
-  if (!cost.has_value()) return;
-  std::printf("  %-34s %.3g h of a core\n", "cost, from a trial", cost->core_hours);
-  std::printf("  %-34s %.3g h with %d workers\n", "  on this machine",
-              cost->core_hours / cost->workers, cost->workers);
-  std::printf("  %-34s %.3g s\n", "  longest run", cost->longest_s);
-  std::printf("  %-34s %.0f MB\n", "memory of a worker", cost->memory_mb);
 }
 
 Json json_of(const CampaignPlan& plan, const std::optional<Cost>& cost) {
@@ -126,52 +108,56 @@ Json json_of(const CampaignPlan& plan, const std::optional<Cost>& cost) {
                {"keep", keep_name(plan.settings.keep)},
                {"simulated_hours", simulated_hours(plan)}};
   if (cost.has_value()) {
-    json["core_hours"] = cost->core_hours;
-    json["longest_run_s"] = cost->longest_s;
-    json["memory_mb"] = cost->memory_mb;
-    json["workers"] = cost->workers;
+    json.update({{"core_hours", cost->core_hours},
+                 {"longest_run_s", cost->longest_s},
+                 {"memory_mb", cost->memory_mb},
+                 {"workers", cost->workers}});
   }
   return json;
 }
 
+void print_plan(const Json& json) {
+  const auto row = [&](const std::string& name, const char* text) {
+    print("  {:-34s} {}\n", name, filled(text, json));
+  };
+  print("{name}: {cells} cells x {seeds} seeds = {runs} runs\n", json);
+  for (const Json& factor : json["factors"])
+    print("  {:-34s} {}\n", factor["keys"], levels_text(factor["values"]));
+  row("kept of a run", "{keep}");
+  row("simulated time", "{simulated_hours:.3g} h");
+  if (!json.contains("core_hours")) return;
+  row("cost, from a trial", "{core_hours:.3g} h of a core");
+  print("  {:-34s} {:.3g} h with {} workers\n", "  on this machine",
+        json["core_hours"].get<double>() / json["workers"].get<int>(), json["workers"]);
+  row("  longest run", "{longest_run_s:.3g} s");
+  row("memory of a worker", "{memory_mb:.0f} MB");
+}
+
 int run_plan(const PlanArguments& arguments, const std::string& version) {
+  if (arguments.list_keys) {
+    std::cout << "| key | unit | default | allowed | meaning |\n| --- | --- | --- | --- | --- |\n"
+              << campaign_key_table();
+    return 0;
+  }
+  if (arguments.campaign.file.empty()) throw UsageError("FILE is required", "screed campaign plan");
   catch_interrupts();
   const CampaignPlan plan = choose_campaign(arguments.campaign, version).plan;
   std::optional<Cost> cost;
   if (!arguments.no_trial) cost = cost_of(plan);
-  if (arguments.json) {
-    std::cout << json_of(plan, cost).dump(2) << "\n";
-  } else {
-    print_table(plan, cost);
-  }
+  const Json json = json_of(plan, cost);
+  arguments.json ? print_json(json) : print_plan(json);
   return 0;
 }
 
 }  // namespace
 
 void register_campaign_plan_command(Command& campaign, Program& program) {
-  auto arguments = std::make_shared<PlanArguments>();
-  Command* command =
-      campaign.add_subcommand("plan", "Show what a campaign would run and what that costs");
-  command->add_option("FILE", arguments->campaign.file, "Campaign file (INI), or its folder");
-  command->add_flag("--no-trial", arguments->no_trial, "Do not try runs; the cost is not shown");
-  command->add_flag("--keys", arguments->list_keys, "List the keys of a campaign file and exit");
-  command->add_flag("--json", arguments->json, "Print JSON");
-  command->callback([arguments, &program] {
-    if (arguments->list_keys) {
-      program.action = [] {
-        std::cout
-            << "| key | unit | default | allowed | meaning |\n| --- | --- | --- | --- | --- |\n"
-            << campaign_key_table();
-        return 0;
-      };
-      return;
-    }
-    if (arguments->campaign.file.empty()) throw UsageError("FILE is required");
-    program.action = [arguments, version = program.version] {
-      return run_plan(*arguments, version);
-    };
-  });
+  auto [command, arguments] = add_subcommand<PlanArguments>(
+      campaign, program, "plan", "Show what a campaign would run and what that costs", run_plan);
+  command.add_option("FILE", arguments.campaign.file, "Campaign file (INI), or its folder");
+  command.add_flag("--no-trial", arguments.no_trial, "Do not try runs; the cost is not shown");
+  command.add_flag("--keys", arguments.list_keys, "List the keys of a campaign file and exit");
+  command.add_flag("--json", arguments.json, "Print JSON");
 }
 
 }  // namespace screed

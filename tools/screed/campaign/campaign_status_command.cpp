@@ -1,14 +1,12 @@
 // `screed campaign status FOLDER`: how far a campaign has come, and what went wrong in it.
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/json.h"
+#include "host_sim/core/figures.h"
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/campaign/slurm.h"
 #include "tools/screed/cli/command.h"
@@ -53,7 +51,7 @@ void print_jobs(const CampaignFolder& folder) {
   for (const SlurmJob& job : slurm_jobs(folder)) {
     try {
       if (const int tasks = slurm::active_tasks(job.number); tasks > 0)
-        std::printf("  job %s  %d tasks in the queue\n", job.number.c_str(), tasks);
+        print("  job {}  {} tasks in the queue\n", job.number, tasks);
     } catch (const RunError& error) {
       std::cerr << "note: job " << job.number << ": " << error.what() << "\n";
     }
@@ -68,14 +66,14 @@ int run_status(const StatusArguments& arguments) {
   const CampaignCount count = count_results(plan, results);
   const std::vector<Failure> failures = failures_of(plan, results);
   if (arguments.json) {
-    std::cout << json_of(plan, count, failures).dump(2) << "\n";
+    print_json(json_of(plan, count, failures));
     return 0;
   }
-  std::printf("%s: %s\n", plan.settings.name.c_str(), count.text().c_str());
+  print("{}: {}\n", plan.settings.name, count.text());
   for (size_t i = 0; i < std::min(failures.size(), kFailedRunsShown); ++i)
-    std::printf("  run %zu  %s\n", failures[i].run, failures[i].error.c_str());
+    print("  run {}  {}\n", failures[i].run, failures[i].error);
   if (failures.size() > kFailedRunsShown)
-    std::printf("  and %zu failed runs more\n", failures.size() - kFailedRunsShown);
+    print("  and {} failed runs more\n", failures.size() - kFailedRunsShown);
   print_jobs(folder);
   return 0;
 }
@@ -83,13 +81,10 @@ int run_status(const StatusArguments& arguments) {
 }  // namespace
 
 void register_campaign_status_command(Command& campaign, Program& program) {
-  auto arguments = std::make_shared<StatusArguments>();
-  Command* command =
-      campaign.add_subcommand("status", "Show how far a campaign is and which runs failed");
-  command->add_option("FOLDER", arguments->folder, "Folder of the campaign")->required();
-  command->add_flag("--json", arguments->json, "Print JSON");
-  command->callback(
-      [arguments, &program] { program.action = [arguments] { return run_status(*arguments); }; });
+  auto [command, arguments] = add_subcommand<StatusArguments>(
+      campaign, program, "status", "Show how far a campaign is and which runs failed", run_status);
+  command.add_option("FOLDER", arguments.folder, "Folder of the campaign")->required();
+  command.add_flag("--json", arguments.json, "Print JSON");
 }
 
 }  // namespace screed

@@ -2,11 +2,9 @@
 // each shard of runs.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -15,6 +13,7 @@
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/campaign/slurm.h"
 #include "tools/screed/cli/command.h"
@@ -135,10 +134,8 @@ std::string script_text(const SubmitArguments& arguments, const ChosenCampaign& 
 /// The first name that is free: 0001, 0002, ...
 fs::path new_submission(const CampaignFolder& folder) {
   for (int number = 1;; ++number) {
-    char name[16];
-    std::snprintf(name, sizeof name, "%04d", number);
     std::error_code error;
-    fs::path path = folder.slurm() / name;
+    fs::path path = folder.slurm() / filled("{:04.0f}", number);
     fs::create_directories(folder.slurm(), error);
     if (fs::create_directory(path, error)) return path;
     if (error) throw RunError(path.string() + ": cannot be made: " + error.message());
@@ -167,8 +164,8 @@ int run_submit(const SubmitArguments& arguments, const std::string& version) {
   note_odd_results(campaign.plan, results);
   const std::vector<size_t> runs = missing_runs(campaign.plan, results);
   if (runs.empty()) {
-    std::printf("%s: %s; nothing to submit\n", campaign.plan.settings.name.c_str(),
-                count_results(campaign.plan, results).text().c_str());
+    print("{}: {}; nothing to submit\n", campaign.plan.settings.name,
+          count_results(campaign.plan, results).text());
     return 0;
   }
   const CampaignTrial trial = find_trial(campaign.plan, campaign.folder, true);
@@ -178,45 +175,39 @@ int run_submit(const SubmitArguments& arguments, const std::string& version) {
   write_file(folder / "shards", shards_text(shards));
   write_file(script, script_text(arguments, campaign, shards, trial, folder));
   if (arguments.dry_run) {
-    std::printf("%zu runs in %zu tasks; script %s\n", runs.size(), shards.size(), script.c_str());
+    print("{} runs in {} tasks; script {}\n", runs.size(), shards.size(), script);
     return 0;
   }
   const std::string job = slurm::submit(script);
   write_file(folder / "job", job + "\n");
-  std::printf("%s: job %s, %zu runs in %zu tasks\n  folder  %s\n",
-              campaign.plan.settings.name.c_str(), job.c_str(), runs.size(), shards.size(),
-              campaign.folder.path.c_str());
+  print("{}: job {}, {} runs in {} tasks\n  folder  {}\n", campaign.plan.settings.name, job,
+        runs.size(), shards.size(), campaign.folder.path);
   return 0;
 }
 
 }  // namespace
 
 void register_campaign_submit_command(Command& campaign, Program& program) {
-  auto arguments = std::make_shared<SubmitArguments>();
-  Command* command = campaign.add_subcommand(
-      "submit", "Submit what is missing of a campaign to a cluster as a job array");
-  command->add_option("FILE", arguments->campaign.file, "Campaign file (INI), or its folder")
+  auto [command, arguments] = add_subcommand<SubmitArguments>(
+      campaign, program, "submit",
+      "Submit what is missing of a campaign to a cluster as a job array", run_submit);
+  command.add_option("FILE", arguments.campaign.file, "Campaign file (INI), or its folder")
       ->required();
-  command->add_flag("--slurm", arguments->slurm, "The cluster has Slurm");
+  command.add_flag("--slurm", arguments.slurm, "The cluster has Slurm");
   command
-      ->add_option("--out", arguments->campaign.out,
-                   "Folder of the campaign, which all nodes see (default: out/NAME)")
+      .add_option("--out", arguments.campaign.out,
+                  "Folder of the campaign, which all nodes see (default: out/NAME)")
       ->type_name("FOLDER");
   command
-      ->add_option("--option", arguments->options,
-                   "An option for sbatch, such as --option=--partition=long; may be repeated")
+      .add_option("--option", arguments.options,
+                  "An option for sbatch, such as --option=--partition=long; may be repeated")
       ->type_name("OPTION")
       ->one_value_each();
-  command->add_flag("--dry-run", arguments->dry_run, "Write the script and do not submit it");
+  command.add_flag("--dry-run", arguments.dry_run, "Write the script and do not submit it");
   command
-      ->add_option("--as-version", arguments->campaign.as_version,
-                   "Count results of this version of Screed as this program's")
+      .add_option("--as-version", arguments.campaign.as_version,
+                  "Count results of this version of Screed as this program's")
       ->type_name("VERSION");
-  command->callback([arguments, &program] {
-    program.action = [arguments, version = program.version] {
-      return run_submit(*arguments, version);
-    };
-  });
 }
 
 }  // namespace screed

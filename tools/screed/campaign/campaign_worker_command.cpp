@@ -59,16 +59,11 @@ int run_worker(const WorkerArguments& arguments, const std::string& version) {
 }  // namespace
 
 void register_campaign_worker_command(Command& campaign, Program& program) {
-  auto arguments = std::make_shared<WorkerArguments>();
-  Command* command =
-      campaign.add_subcommand("worker", "Execute runs for `screed campaign run` and `screed grid`");
-  command->add_option("FOLDER", arguments->folder, "Folder of a campaign or sweep")->required();
-  command->add_flag("--grid", arguments->is_grid, "The folder is that of a sweep of `screed grid`");
-  command->callback([arguments, &program] {
-    program.action = [arguments, version = program.version] {
-      return run_worker(*arguments, version);
-    };
-  });
+  auto [command, arguments] = add_subcommand<WorkerArguments>(
+      campaign, program, "worker", "Execute runs for `screed campaign run` and `screed grid`",
+      run_worker);
+  command.add_option("FOLDER", arguments.folder, "Folder of a campaign or sweep")->required();
+  command.add_flag("--grid", arguments.is_grid, "The folder is that of a sweep of `screed grid`");
 }
 
 }  // namespace screed

@@ -11,7 +11,9 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
+#include <type_traits>
 
 #include "tools/command_line/command.h"
 
@@ -21,5 +23,31 @@ struct Program {
   std::string version;
   std::function<int()> action;  ///< set by the chosen subcommand; returns the exit code
 };
+
+/// A subcommand, and what its options set; both live as long as its parent.
+template <class Arguments>
+struct Subcommand {
+  Command& command;
+  Arguments& arguments;
+};
+
+/// A subcommand that is `run(arguments)`, or `run(arguments, version)`, which returns the exit
+/// code.
+template <class Arguments, class Run>
+Subcommand<Arguments> add_subcommand(Command& parent, Program& program, const std::string& name,
+                                     const std::string& help, Run run) {
+  Command* const command = parent.add_subcommand(name, help);
+  const auto arguments = std::make_shared<Arguments>();
+  command->callback([arguments, run, &program] {
+    program.action = [arguments, run, &program] {
+      if constexpr (std::is_invocable_v<Run, Arguments&, std::string&>) {
+        return run(*arguments, program.version);
+      } else {
+        return run(*arguments);
+      }
+    };
+  });
+  return {*command, *arguments};
+}
 
 }  // namespace screed

@@ -1,11 +1,11 @@
 // Experiments one after the other.
 #include "tools/screed/cli/run_batch.h"
 
-#include <cstdio>
 #include <iostream>
 #include <set>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/run/experiment/experiment_table.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_text.h"
@@ -46,10 +46,9 @@ void check_all(const std::vector<Experiment>& experiments, SimulationOptions opt
     const std::string& name = experiments[i].experiment.name;
     options.setup_progress = [&](std::string_view task, double of_task) {
       stop_if_interrupted("checking " + name + "; no experiment was begun");
-      char percent[16];
-      std::snprintf(percent, sizeof percent, " %.0f %%", of_task * 100.0);
       const double share = static_cast<double>(i) / static_cast<double>(experiments.size());
-      if (!quiet) bar.show_share(share, "checking " + name + ": " + std::string(task) + percent);
+      if (!quiet)
+        bar.show_share(share, filled("checking {}: {} {*100:.0f} %", name, task, of_task));
     };
     try {
       check_simulation(experiments[i], options);
@@ -72,9 +71,7 @@ SimulationSummary run_one(const Experiment& experiment, SimulationOptions option
       setup_bar.clear();
       const double before_m = progress.level_deviation_before_m;
       const double now_m = progress.level_deviation_m;
-      char text[48];
-      std::snprintf(text, sizeof text, "off level %.1f mm", now_m * 1e3);
-      std::string note = label + text;
+      std::string note = label + filled("off level {*1000:.1f} mm", now_m);
       if (now_m != before_m) note += ", " + change_text(before_m, now_m);
       bar->show(progress.time_s, progress.duration_s, note);
     };
@@ -158,15 +155,11 @@ void run_batch(const BatchArguments& arguments, const std::vector<std::string>& 
 }
 
 std::string json_of(const std::vector<SimulationSummary>& summaries, bool several) {
-  if (!several) return summaries.empty() ? "" : summary_json_with_folder(summaries.front());
-  std::string text = "[\n";
-  for (const SimulationSummary& summary : summaries) {
-    if (text.size() > 2) text += ",\n";
-    std::string one = summary_json_with_folder(summary);
-    while (!one.empty() && one.back() == '\n') one.pop_back();
-    text += one;
-  }
-  return text + "\n]\n";
+  std::string text;
+  for (const SimulationSummary& summary : summaries)
+    text += (text.empty() ? "" : ",\n") + summary_json_with_folder(summary).dump(2);
+  if (several) return "[\n" + text + "\n]\n";
+  return text.empty() ? "" : text + "\n";
 }
 
 }  // namespace screed

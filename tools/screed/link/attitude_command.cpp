@@ -8,16 +8,14 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <iomanip>
 #include <iostream>
-#include <memory>
 #include <numbers>
 #include <optional>
 #include <string_view>
 
 #include "firmware/estimation/attitude.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/json.h"
+#include "host_sim/core/figures.h"
 #include "tools/screed/cli/command.h"
 
 namespace screed {
@@ -202,22 +200,17 @@ void print_table(const std::vector<AttitudeScore>& scores, const AttitudeScore& 
                  std::ostream& out) {
   std::size_t width = 4;
   for (const AttitudeScore& score : scores) width = std::max(width, score.file.size());
-  const int name = static_cast<int>(width);
-  const std::ios_base::fmtflags flags = out.flags();
-  const std::streamsize precision = out.precision();
-  out << std::fixed << std::setprecision(3);
-  out << std::left << std::setw(name) << "file" << std::right
-      << "  samples  inclination  heading\n";
-  out << std::left << std::setw(name) << "" << std::right << "               RMS deg  RMS deg\n";
+  const auto row = [&](const std::string& name, const std::string& figures) {
+    out << name << std::string(width - name.size(), ' ') << figures << '\n';
+  };
+  row("file", "  samples  inclination  heading");
+  row("", "               RMS deg  RMS deg");
   for (const AttitudeScore& score : scores) {
-    out << std::left << std::setw(name) << score.file << std::right << std::setw(9) << score.samples
-        << std::setw(13) << score.rms_inclination_deg << std::setw(9) << score.rms_heading_deg
-        << '\n';
+    row(score.file, filled("{:9s}{:13.3f}{:9.3f}", score.samples, score.rms_inclination_deg,
+                           score.rms_heading_deg));
   }
-  out << std::left << std::setw(name) << mean.file << std::right << std::setw(9) << ""
-      << std::setw(13) << mean.rms_inclination_deg << std::setw(9) << mean.rms_heading_deg << '\n';
-  out.flags(flags);
-  out.precision(precision);
+  row(mean.file,
+      filled("{:9s}{:13.3f}{:9.3f}", "", mean.rms_inclination_deg, mean.rms_heading_deg));
 }
 
 void print_json(const std::vector<AttitudeScore>& scores, const AttitudeScore& mean,
@@ -286,16 +279,13 @@ void register_attitude_command(Command& root, Program& program) {
     std::vector<std::string> files;
     bool json = false;
   };
-  const auto options = std::make_shared<Options>();
-  Command* command = root.add_subcommand(
-      "attitude",
-      "Run the attitude estimator over recordings with an optical reference and print its errors");
-  command->add_option("FILES", options->files, "CSV recordings (format: docs/attitude.md)")
+  auto [command, options] = add_subcommand<Options>(
+      root, program, "attitude",
+      "Run the attitude estimator over recordings with an optical reference and print its errors",
+      [](const Options& given) { return run_attitude(given.files, given.json, std::cout); });
+  command.add_option("FILES", options.files, "CSV recordings (format: docs/attitude.md)")
       ->required();
-  command->add_flag("--json", options->json, "Print JSON");
-  command->callback([options, &program] {
-    program.action = [options] { return run_attitude(options->files, options->json, std::cout); };
-  });
+  command.add_flag("--json", options.json, "Print JSON");
 }
 
 }  // namespace screed

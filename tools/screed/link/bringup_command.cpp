@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
+#include <iostream>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -20,6 +19,7 @@
 
 #include "firmware/protocol/node.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/ground_station/link/command_session.h"
 #include "host_sim/ground_station/link/robot_history.h"
 #include "host_sim/ground_station/link/serial_link.h"
@@ -77,22 +77,14 @@ Outcome fail(std::string text) {
   return {Outcome::Kind::kFail, std::move(text)};
 }
 
-void print(const std::string& step, const Outcome& outcome) {
+void say(const std::string& step, const Outcome& outcome) {
   constexpr const char* kWords[] = {"pass", "pass, but ", "not tried: ", "FAIL: "};
-  std::printf("%-14s %s%s\n", step.c_str(), kWords[static_cast<size_t>(outcome.kind)],
-              outcome.text.c_str());
-  std::fflush(stdout);
+  print("{:-14s} {}{}\n", step, kWords[static_cast<size_t>(outcome.kind)], outcome.text);
+  std::cout << std::flush;
 }
 
 void ask(const std::string& what) {
-  std::printf("  > %s\n", what.c_str());
-  std::fflush(stdout);
-}
-
-std::string text(const char* pattern, double number) {
-  char line[96];
-  std::snprintf(line, sizeof line, pattern, number);
-  return line;
+  std::cout << "  > " << what << std::endl;
 }
 
 constexpr const char* kSides[] = {"left", "right"};
@@ -148,7 +140,7 @@ class Bringup {
                                        [&](const auto& name) { return failed.count(name) != 0; });
       const Outcome outcome =
           broken != step.needs.end() ? not_tried("first the " + *broken) : step.outcome();
-      print(step.name, outcome);
+      say(step.name, outcome);
       if (!outcome.failed()) continue;
       failed.insert(step.name);
       if (first) break;  // nothing else can be seen
@@ -322,9 +314,9 @@ class Bringup {
     const double g = std::abs(rest_mg_[up]) * 1e-3;
     if (!(g > kGravity_g[0] && g < kGravity_g[1]))
       return fail(
-          text("%.2f g along the axis that points up or down: it does not lie level, or the "
-               "accelerometer does not measure gravity",
-               g));
+          filled("{:.2f} g along the axis that points up or down: it does not lie level, or the "
+                 "accelerometer does not measure gravity",
+                 g));
     if (up != 2 || rest_mg_[2] < 0.0)
       return fail(std::string("the IMU's ") + "XYZ"[up] + " axis points " +
                   (rest_mg_[up] > 0.0 ? "up" : "down") + ": Z has to (docs/wiring.md)");
@@ -352,14 +344,16 @@ class Bringup {
   Outcome battery() {
     ask("switch the battery on");
     if (!wait_until([this] { return value("power.battery") >= 1e3; }, arguments_.patience_s))
-      return fail(text("%.2f V: the battery is off, or the wire to the board's divider is loose",
-                       value("power.battery") * 1e-3));
+      return fail(
+          filled("{:.2f} V: the battery is off, or the wire to the board's divider is loose",
+                 value("power.battery") * 1e-3));
     const double volts = value("power.battery") * 1e-3;
     const int cells = board_battery_cells(board_);
-    if (cells == 0) return note(text("%.2f V is not judged: the board has no battery.ini", volts));
+    if (cells == 0)
+      return note(filled("{:.2f} V is not judged: the board has no battery.ini", volts));
     const std::optional<double> charge = battery_charge(volts, cells);
     if (!charge.has_value())
-      return fail(text("%.2f V", volts) + " is no voltage of " + std::to_string(cells) +
+      return fail(filled("{:.2f} V", volts) + " is no voltage of " + std::to_string(cells) +
                   " NiMH cells");
     return *charge < kLowCharge ? note(battery_text(volts, cells) + ": charge it") : pass();
   }
@@ -430,9 +424,9 @@ class Bringup {
     if (std::isnan(length)) return fail("no measurement");
     if (length >= kField_mg[0] && length <= kField_mg[1]) return pass();
     return note(
-        text("%.0f mG: iron or a motor beside it; screed calibrate takes off what does not "
-             "change",
-             length));
+        filled("{:.0f} mG: iron or a motor beside it; screed calibrate takes off what does not "
+               "change",
+               length));
   }
 
   /// Meanwhile the cable is silent: the robot hears this ground station by radio or not at all.
@@ -498,35 +492,32 @@ class Bringup {
 }  // namespace
 
 void register_bringup_command(Command& root, Program& program) {
-  auto arguments = std::make_shared<BringupArguments>();
-  Command* command = root.add_subcommand(
-      "bringup", "Lead through the first hour of a robot: board, sensors, encoders, motors, radio");
+  auto [command, arguments] = add_subcommand<BringupArguments>(
+      root, program, "bringup",
+      "Lead through the first hour of a robot: board, sensors, encoders, motors, radio",
+      [](const BringupArguments& given) {
+        catch_interrupts();
+        return Bringup(given).run();
+      });
   command
-      ->add_option("--port", arguments->link.port,
-                   "The board's own serial port on USB, e.g. /dev/ttyACM0")
+      .add_option("--port", arguments.link.port,
+                  "The board's own serial port on USB, e.g. /dev/ttyACM0")
       ->type_name("DEVICE")
       ->required();
   command
-      ->add_option("--key", arguments->link.key,
-                   "File with the robot's command key; without it arming is not tried")
+      .add_option("--key", arguments.link.key,
+                  "File with the robot's command key; without it arming is not tried")
       ->type_name("FILE");
-  command
-      ->add_option("--radio", arguments->radio, "Serial port of the radio module, to test it too")
+  command.add_option("--radio", arguments.radio, "Serial port of the radio module, to test it too")
       ->type_name("DEVICE");
   command
-      ->add_option("--only", arguments->only,
-                   "Only this step: chips, level, \"left encoder\", \"right encoder\", battery, "
-                   "\"left motor\", \"right motor\", turn, nose, magnetometer, radio, arm")
+      .add_option("--only", arguments.only,
+                  "Only this step: chips, level, \"left encoder\", \"right encoder\", battery, "
+                  "\"left motor\", \"right motor\", turn, nose, magnetometer, radio, arm")
       ->type_name("STEP");
-  add_number(*command, "--patience", arguments->patience_s,
+  add_number(command, "--patience", arguments.patience_s,
              "How long a step waits for what it asks for [s]", {1.0, 600.0})
       ->show_default();
-  command->callback([arguments, &program] {
-    program.action = [arguments] {
-      catch_interrupts();
-      return Bringup(*arguments).run();
-    };
-  });
 }
 
 }  // namespace screed

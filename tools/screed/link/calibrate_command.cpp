@@ -4,12 +4,12 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdio>
 #include <deque>
 #include <iostream>
 #include <memory>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/ground_station/calibration/imu_calibration.h"
 #include "host_sim/ground_station/link/calibration_page.h"
 #include "host_sim/ground_station/link/command_session.h"
@@ -61,7 +61,7 @@ class Calibration {
     stop_if_interrupted("calibrating; nothing was changed");
     if (given_up_) throw RunError("calibration given up; nothing was changed");
     const ImuCalibration calibration = collector_.fit();
-    print(calibration);
+    print_found(calibration);
     if (!arguments_.yes && !asked("store this in the robot? [y/n] ")) {
       std::cout << "nothing was changed\n";
       return 0;
@@ -153,30 +153,31 @@ class Calibration {
   }
 
   static void row(const char* name, const Eigen::Vector3d& v, const char* unit) {
-    std::printf("  %-26s %9.3f %9.3f %9.3f  %s\n", name, v.x(), v.y(), v.z(), unit);
+    print("  {:-26s} {:9.3f} {:9.3f} {:9.3f}  {}\n", name, v.x(), v.y(), v.z(), unit);
   }
 
   static void residual(const VectorFit& fit) {
-    std::printf(
-        "  %-26s %8.3f %% before, %.3f %% with what is stored, %.3f %% with scale as well\n",
-        "lengths differ by (RMS)", fit.residual_before * 100.0, fit.residual_offset * 100.0,
-        fit.residual_after * 100.0);
+    print(
+        "  {:-26s} {*100:8.3f} % before, {*100:.3f} % with what is stored, {*100:.3f} % with scale "
+        "as "
+        "well\n",
+        "lengths differ by (RMS)", fit.residual_before, fit.residual_offset, fit.residual_after);
   }
 
-  static void print(const ImuCalibration& calibration) {
-    std::printf("%-28s %9s %9s %9s\n", "", "x", "y", "z");
-    std::printf("gyro\n");
+  static void print_found(const ImuCalibration& calibration) {
+    print("{:-28s} {:9s} {:9s} {:9s}\n", "", "x", "y", "z");
+    print("gyro\n");
     row("bias", calibration.gyro.bias * kGyro_dps, "deg/s");
-    std::printf("accelerometer\n");
+    print("accelerometer\n");
     row("offset", calibration.accelerometer.correction.offset * kAccel_mg, "mg");
     row("scale", calibration.accelerometer.correction.matrix.diagonal(), "");
     residual(calibration.accelerometer);
-    std::printf("magnetometer\n");
+    print("magnetometer\n");
     row("offset (hard iron)", calibration.magnetometer.correction.offset * kMag_mg, "mG");
     row("scale (soft iron)", calibration.magnetometer.correction.matrix.diagonal(), "");
-    std::printf("  %-26s %9.1f mG\n", "field", calibration.magnetometer.radius * kMag_mg);
+    print("  {:-26s} {:9.1f} mG\n", "field", calibration.magnetometer.radius * kMag_mg);
     residual(calibration.magnetometer);
-    std::fflush(stdout);
+    std::cout << std::flush;
   }
 
   const LatestTelemetry& robot_said() const {
@@ -227,21 +228,18 @@ class Calibration {
 }  // namespace
 
 void register_calibrate_command(Command& root, Program& program) {
-  auto arguments = std::make_shared<CalibrateArguments>();
-  Command* command = root.add_subcommand("calibrate",
+  auto [command, arguments] =
+      add_subcommand<CalibrateArguments>(root, program, "calibrate",
                                          "Calibrate a robot's IMU from six positions and a turn "
-                                         "in all directions, and store the result");
-  add_link_options(*command, arguments->link);
-  add_key_option(*command, arguments->link);
-  command->add_flag("--plain", arguments->plain,
-                    "Print lines of text instead of a full-screen page");
-  command->add_flag("--yes", arguments->yes, "Store the result without asking");
-  command->callback([arguments, &program] {
-    program.action = [arguments] {
-      catch_interrupts();
-      return Calibration(*arguments).run();
-    };
-  });
+                                         "in all directions, and store the result",
+                                         [](const CalibrateArguments& given) {
+                                           catch_interrupts();
+                                           return Calibration(given).run();
+                                         });
+  add_link_options(command, arguments.link);
+  add_key_option(command, arguments.link);
+  command.add_flag("--plain", arguments.plain, "Print lines of text instead of a full-screen page");
+  command.add_flag("--yes", arguments.yes, "Store the result without asking");
 }
 
 }  // namespace screed

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <iostream>
-#include <memory>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/telemetry/candump_log.h"
@@ -51,26 +50,23 @@ int run_decode(const DecodeOptions& options, std::ostream& out, std::ostream& er
 }
 
 void register_decode_command(Command& root, Program& program) {
-  const auto options = std::make_shared<DecodeOptions>();
-  Command* command = root.add_subcommand(
-      "decode", "Convert a radio log to CSV tables or to an MCAP file for Foxglove");
-  command->add_option("LOG", options->log, "Log as written by candump -L; -: standard input")
+  auto [command, options] = add_subcommand<DecodeOptions>(
+      root, program, "decode", "Convert a radio log to CSV tables or to an MCAP file for Foxglove",
+      [](const DecodeOptions& given) { return run_decode(given, std::cout, std::cerr); });
+  command.add_option("LOG", options.log, "Log as written by candump -L; -: standard input")
       ->required();
-  command->add_flag(
-      "--csv", options->csv,
+  command.add_flag(
+      "--csv", options.csv,
       "Write a folder of CSV tables, one per message, and one of the slip of both tracks");
-  command->add_flag("--mcap", options->mcap, "Write an MCAP file");
+  command.add_flag("--mcap", options.mcap, "Write an MCAP file");
   command
-      ->add_option("--out", options->out,
-                   "Output path (default: LOG without its extension, with _csv or .mcap)")
+      .add_option("--out", options.out,
+                  "Output path (default: LOG without its extension, with _csv or .mcap)")
       ->type_name("PATH");
-  command->add_flag("--numbers", options->numbers, "Write named values as numbers (CSV)");
-  command->add_option("--board", options->board, "Board of the robots (CSV)")
+  command.add_flag("--numbers", options.numbers, "Write named values as numbers (CSV)");
+  command.add_option("--board", options.board, "Board of the robots (CSV)")
       ->type_name("NAME")
       ->show_default();
-  command->callback([options, &program] {
-    program.action = [options] { return run_decode(*options, std::cout, std::cerr); };
-  });
 }
 
 }  // namespace screed

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/ground_station/link/dashboard.h"
 #include "host_sim/ground_station/link/robot_history.h"
 #include "host_sim/ground_station/link/robot_pilot.h"
@@ -196,10 +196,8 @@ class PersonDrives {
   std::string order_text() const {
     if (!pilot_.drives()) return "hold an arrow key to drive";
     if (order_.speed_m_per_s == 0.0 && order_.yaw_rate_deg_per_s == 0.0) return "you stand";
-    char text[64];
-    std::snprintf(text, sizeof text, "you drive %.2f m/s, %.0f deg/s", order_.speed_m_per_s,
+    return filled("you drive {:.2f} m/s, {:.0f} deg/s", order_.speed_m_per_s,
                   order_.yaw_rate_deg_per_s);
-    return text;
   }
 
   const DriveArguments& arguments_;
@@ -221,29 +219,26 @@ class PersonDrives {
 }  // namespace
 
 void register_drive_command(Command& root, Program& program) {
-  auto arguments = std::make_shared<DriveArguments>();
-  Command* command =
-      root.add_subcommand("drive", "Drive a robot by keys or gamepad, its telemetry beside");
-  add_link_options(*command, arguments->link);
-  add_key_option(*command, arguments->link);
-  add_number(*command, "--speed", arguments->speed_m_per_s, "Greatest speed [m/s]", {0.02, 1.0})
+  auto [command, arguments] = add_subcommand<DriveArguments>(
+      root, program, "drive", "Drive a robot by keys or gamepad, its telemetry beside",
+      [](const DriveArguments& given) {
+        if (isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0)
+          throw InputError("drive: keys come from a terminal, and here is none");
+        catch_interrupts();
+        return PersonDrives(given).run();
+      });
+  add_link_options(command, arguments.link);
+  add_key_option(command, arguments.link);
+  add_number(command, "--speed", arguments.speed_m_per_s, "Greatest speed [m/s]", {0.02, 1.0})
       ->show_default();
-  add_number(*command, "--turn", arguments->turn_deg_per_s, "Greatest turn rate [deg/s]",
+  add_number(command, "--turn", arguments.turn_deg_per_s, "Greatest turn rate [deg/s]",
              {5.0, 180.0})
       ->show_default();
-  command->add_option("--log", arguments->log, "Append every frame to this candump log")
+  command.add_option("--log", arguments.log, "Append every frame to this candump log")
       ->type_name("FILE");
-  command->add_option("--board", arguments->board, "Board of the robot, for the slip of tracks")
+  command.add_option("--board", arguments.board, "Board of the robot, for the slip of tracks")
       ->type_name("NAME")
       ->show_default();
-  command->callback([arguments, &program] {
-    program.action = [arguments] {
-      if (isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0)
-        throw InputError("drive: keys come from a terminal, and here is none");
-      catch_interrupts();
-      return PersonDrives(*arguments).run();
-    };
-  });
 }
 
 }  // namespace screed

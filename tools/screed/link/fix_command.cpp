@@ -232,29 +232,26 @@ class FixSender {
 }  // namespace
 
 void register_fix_command(Command& root, Program& program) {
-  auto arguments = std::make_shared<FixArguments>();
-  Command* command =
-      root.add_subcommand("fix", "Send position fixes, of a camera for instance, to a robot");
-  add_link_options(*command, arguments->link);
-  add_key_option(*command, arguments->link);
+  auto [command, arguments] = add_subcommand<FixArguments>(
+      root, program, "fix", "Send position fixes, of a camera for instance, to a robot",
+      [](const FixArguments& given) {
+        catch_interrupts();
+        return FixSender(given).run();
+      });
+  add_link_options(command, arguments.link);
+  add_key_option(command, arguments.link);
   command
-      ->add_option("FROM", arguments->from,
-                   "File or pipe of fixes, a line each: x y or x y sigma, in metres; -: standard "
-                   "input. Of a file every line is sent, four a second; of a pipe the newest")
+      .add_option("FROM", arguments.from,
+                  "File or pipe of fixes, a line each: x y or x y sigma, in metres; -: standard "
+                  "input. Of a file every line is sent, four a second; of a pipe the newest")
       ->type_name("FILE");
-  add_number(*command, "--udp", arguments->udp,
+  add_number(command, "--udp", arguments.udp,
              "Read such lines from datagrams to this port of the loopback interface", {1, 65535});
-  add_number(*command, "--max-sigma", arguments->max_sigma_m,
+  add_number(command, "--max-sigma", arguments.max_sigma_m,
              "Leave out fixes with a greater standard deviation [m]", {0.001, 10.0})
       ->show_default();
-  command->add_flag("--listen", arguments->listen,
-                    "Send no heartbeats: another ground station is in charge");
-  command->callback([arguments, &program] {
-    program.action = [arguments] {
-      catch_interrupts();
-      return FixSender(*arguments).run();
-    };
-  });
+  command.add_flag("--listen", arguments.listen,
+                   "Send no heartbeats: another ground station is in charge");
 }
 
 }  // namespace screed

@@ -12,10 +12,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 #include <optional>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/ground_station/link/pseudo_terminal.h"
 #include "host_sim/ground_station/link/serial_link.h"
 #include "host_sim/ground_station/station/key_file.h"
@@ -78,7 +78,7 @@ class UsbConsole {
 CommandKey new_key_in(const Arguments& arguments) {
   const CommandKey key = random_key(static_cast<uint8_t>(arguments.robot_id.value_or(1)));
   write_key_file(arguments.file, key);
-  std::printf("%s: a new key for robot %d\n", arguments.file.c_str(), key.robot_id);
+  print("{}: a new key for robot {}\n", arguments.file, key.robot_id);
   return key;
 }
 
@@ -91,7 +91,7 @@ std::optional<CommandKey> key_in(const Arguments& arguments) {
     throw InputError(arguments.file + ": is the key of robot " + std::to_string(key.robot_id) +
                      "; --robot-id says " + std::to_string(*arguments.robot_id));
   }
-  std::printf("%s: the key of robot %d\n", arguments.file.c_str(), key.robot_id);
+  print("{}: the key of robot {}\n", arguments.file, key.robot_id);
   return key;
 }
 
@@ -104,10 +104,9 @@ int run_key_command(const Arguments& arguments) {
   }
   // A new key is made once there is a robot to take it.
   const bool restarted = provision_key(arguments.port, get_key);
-  std::printf(restarted
-                  ? "%s: the robot has the key and restarts\n"
-                  : "%s: the robot has the key, but cannot restart now: switch it off and on\n",
-              arguments.port.c_str());
+  print(restarted ? "{}: the robot has the key and restarts\n"
+                  : "{}: the robot has the key, but cannot restart now: switch it off and on\n",
+        arguments.port);
   return 0;
 }
 
@@ -150,23 +149,20 @@ bool provision_key(const std::string& port, const GetKey& get_key) {
 }
 
 void register_key_command(Command& root, Program& program) {
-  Command* command = root.add_subcommand(
-      "key", "Create the key that signs commands, and provision a robot with it over USB");
-  const auto arguments = std::make_shared<Arguments>();
+  auto [command, arguments] = add_subcommand<Arguments>(
+      root, program, "key",
+      "Create the key that signs commands, and provision a robot with it over USB",
+      run_key_command);
   command
-      ->add_option("FILE", arguments->file,
-                   "Key file; created with mode 0600 when it does not exist")
+      .add_option("FILE", arguments.file, "Key file; created with mode 0600 when it does not exist")
       ->required();
   command
-      ->add_option("--port", arguments->port,
-                   "The robot's USB port, e.g. /dev/ttyACM0 (default: create the file only)")
+      .add_option("--port", arguments.port,
+                  "The robot's USB port, e.g. /dev/ttyACM0 (default: create the file only)")
       ->type_name("DEVICE");
-  add_number(*command, "--robot-id", arguments->robot_id,
+  add_number(command, "--robot-id", arguments.robot_id,
              "Robot id of a new key: its node on the radio, as in make flash NODE=N (default: 1)",
              {0, 255});
-  command->callback([arguments, &program] {
-    program.action = [arguments] { return run_key_command(*arguments); };
-  });
 }
 
 }  // namespace screed

@@ -2,15 +2,13 @@
 // its time on, what happened, and how well it was heard. Exit codes: 0, 2 wrong input.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <iostream>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/core/json.h"
 #include "host_sim/ground_station/link/robot_history.h"
 #include "host_sim/ground_station/telemetry/battery_charge.h"
@@ -93,10 +91,12 @@ class DriveSummary {
   }
 
   Json json(int cells) const {
-    Json json;
-    json["duration_s"] = seconds_between(begin_us_.value_or(0), end_us_.value_or(0));
-    json["algorithm"] = algorithm_.empty() ? Json(nullptr) : Json(algorithm_);
-    json["path_m"] = path_m_;
+    const auto or_null = [](const auto& value) {
+      return value.has_value() ? Json(*value) : Json();
+    };
+    Json json = {{"duration_s", seconds_between(begin_us_.value_or(0), end_us_.value_or(0))},
+                 {"algorithm", algorithm_.empty() ? Json() : Json(algorithm_)},
+                 {"path_m", path_m_}};
     if (!x_m_.empty()) {
       json["x_m"] = {x_m_.low, x_m_.high};
       json["y_m"] = {y_m_.low, y_m_.high};
@@ -107,13 +107,11 @@ class DriveSummary {
     json["running_s"] = Json::object();
     for (const auto& [name, s] : activities_) json["running_s"][name] = s;
     if (!battery_v_.empty()) {
-      json["battery_v"] = {{"first", first_v_}, {"last", last_v_}, {"lowest", battery_v_.low}};
-      const std::optional<double> charge = battery_charge(last_v_, cells);
-      json["battery_v"]["charge"] = charge.has_value() ? Json(*charge) : Json(nullptr);
+      json["battery_v"] = {{"first", first_v_},
+                           {"last", last_v_},
+                           {"lowest", battery_v_.low},
+                           {"charge", or_null(battery_charge(last_v_, cells))}};
     }
-    const auto or_null = [](const std::optional<double>& value) {
-      return value.has_value() ? Json(*value) : Json(nullptr);
-    };
     json["slip"] = {{"left", or_null(slip_left_.value())}, {"right", or_null(slip_right_.value())}};
     json["link"] = {{"frames", frames_},
                     {"lost", lost_},
@@ -194,57 +192,40 @@ struct LogArguments {
   bool json = false;
 };
 
-std::string format(const char* pattern, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
-void print_times(const char* title, const Json& times) {
+std::string times_text(const Json& times) {
   double sum = 0.0;
   for (const auto& [name, s] : times.items()) sum += s.get<double>();
   std::string text;
   for (const auto& [name, s] : times.items()) {
-    if (!text.empty()) text += ", ";
-    text += name + format(" %.0f s", s.get<double>()) +
-            format(" (%.0f %%)", 100.0 * s.get<double>() / std::max(sum, 1e-9));
+    text += (text.empty() ? "" : ", ") + filled("{} {:.0f} s ({:.0f} %)", name, s,
+                                                100.0 * s.get<double>() / std::max(sum, 1e-9));
   }
-  std::printf("  %-12s %s\n", title, text.empty() ? "-" : text.c_str());
+  return text.empty() ? "-" : text;
 }
 
-void print(const Json& robot, int cells) {
-  const auto row = [](const char* name, const std::string& text) {
-    std::printf("  %-12s %s\n", name, text.c_str());
+void print_drive(const Json& robot, int cells) {
+  const auto row = [&](const char* name, const std::string& text) {
+    print("  {:-12s} {}\n", name, filled(text, robot));
   };
-  row("duration", format("%.1f s", robot["duration_s"].get<double>()));
-  row("algorithm", robot["algorithm"].is_null() ? "-" : robot["algorithm"].text());
-  std::string path = format("%.2f m", robot["path_m"].get<double>());
-  if (robot.contains("x_m")) {
-    path += format(" by its own position, x %.2f", robot["x_m"][0].get<double>()) +
-            format(" to %.2f, y", robot["x_m"][1].get<double>()) +
-            format(" %.2f", robot["y_m"][0].get<double>()) +
-            format(" to %.2f m", robot["y_m"][1].get<double>());
-  }
-  row("path", path);
-  print_times("states", robot["states_s"]);
-  print_times("running", robot["running_s"]);
+  row("duration", "{duration_s:.1f} s");
+  row("algorithm", robot["algorithm"].is_null() ? "-" : "{algorithm}");
+  row("path", robot.contains("x_m") ? "{path_m:.2f} m by its own position, x {x_m.0:.2f} to "
+                                      "{x_m.1:.2f}, y {y_m.0:.2f} to {y_m.1:.2f} m"
+                                    : "{path_m:.2f} m");
+  row("states", times_text(robot["states_s"]));
+  row("running", times_text(robot["running_s"]));
   if (robot.contains("battery_v")) {
-    const Json& battery = robot["battery_v"];
-    row("battery", format("%.2f V at first, ", battery["first"].get<double>()) +
-                       battery_text(battery["last"].get<double>(), cells) + " at the end, " +
-                       format("%.2f V at least", battery["lowest"].get<double>()));
+    row("battery", "{battery_v.first:.2f} V at first, " +
+                       battery_text(robot["battery_v"]["last"].get<double>(), cells) +
+                       " at the end, {battery_v.lowest:.2f} V at least");
   }
   const auto slip = [&](const char* side) {
     const Json& value = robot["slip"][side];
-    return value.is_null() ? std::string("-") : format("%.0f %%", 100.0 * value.get<double>());
+    return value.is_null() ? "-" : filled("{*100:.0f} %", value);
   };
   row("slip", "left " + slip("left") + ", right " + slip("right") + " in the mean");
-  const Json& link = robot["link"];
-  row("link", std::to_string(link["frames"].get<uint64_t>()) + " frames, " +
-                  format("%.1f %% lost, ", 100.0 * link["loss"].get<double>()) +
-                  format("%.0f s silent", link["silent_s"].get<double>()));
-  for (const Json& event : robot["events"])
-    std::printf("  %9.1f s  %s\n", event["time_s"].get<double>(), event["text"].text().c_str());
+  row("link", "{link.frames} frames, {link.loss*100:.1f} % lost, {link.silent_s:.0f} s silent");
+  for (const Json& event : robot["events"]) print("  {time_s:9.1f} s  {text}\n", event);
 }
 
 int run_log_summary(const LogArguments& arguments) {
@@ -264,18 +245,15 @@ int run_log_summary(const LogArguments& arguments) {
     json["robots"].push_back(robot);
   }
   if (arguments.json) {
-    std::cout << json.dump(2, Json::BadText::kReplace) << "\n";
+    print_json(json);
     return 0;
   }
   for (const Json& robot : json["robots"]) {
-    std::printf("%s, %s\n", arguments.log.c_str(), robot["robot"].text().c_str());
-    print(robot, cells);
+    print("{}, {}\n", arguments.log, robot["robot"]);
+    print_drive(robot, cells);
   }
-  if (counts.unreadable_lines + counts.damaged_frames > 0) {
-    std::printf("%llu lines cannot be read, %llu frames are damaged\n",
-                static_cast<unsigned long long>(counts.unreadable_lines),
-                static_cast<unsigned long long>(counts.damaged_frames));
-  }
+  if (counts.unreadable_lines + counts.damaged_frames > 0)
+    print("{unreadable_lines} lines cannot be read, {damaged_frames} frames are damaged\n", json);
   return 0;
 }
 
@@ -283,19 +261,16 @@ int run_log_summary(const LogArguments& arguments) {
 
 void register_log_command(Command& root, Program& program) {
   Command* log = root.add_subcommand("log", "Look at a robot's own telemetry log");
-  Command* command = log->add_subcommand(
-      "summary",
-      "Print what a robot did: path, states, events and faults with times, battery, slip, link");
-  const auto arguments = std::make_shared<LogArguments>();
-  command->add_option("LOG", arguments->log, "Log as written by candump -L; -: standard input")
+  auto [command, arguments] = add_subcommand<LogArguments>(
+      *log, program, "summary",
+      "Print what a robot did: path, states, events and faults with times, battery, slip, link",
+      run_log_summary);
+  command.add_option("LOG", arguments.log, "Log as written by candump -L; -: standard input")
       ->required();
-  command->add_option("--board", arguments->board, "Board of the robots, for slip and battery")
+  command.add_option("--board", arguments.board, "Board of the robots, for slip and battery")
       ->type_name("NAME")
       ->show_default();
-  command->add_flag("--json", arguments->json, "Print JSON");
-  command->callback([arguments, &program] {
-    program.action = [arguments] { return run_log_summary(*arguments); };
-  });
+  command.add_flag("--json", arguments.json, "Print JSON");
 }
 
 }  // namespace screed

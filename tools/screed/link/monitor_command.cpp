@@ -35,7 +35,7 @@ constexpr int kTabKey = '\t';
 struct MonitorArguments {
   LinkArguments link;
   std::optional<std::string> log;
-  std::vector<std::string> curves;
+  std::vector<std::string> curves = {"attitude.pitch", "leveling.speed", "gyro_raw.z"};
   std::string board = kDefaultBoard;
   std::optional<int> cells;
   double duration_s = 0.0;
@@ -260,40 +260,37 @@ class Monitor {
 }  // namespace
 
 void register_monitor_command(Command& root, Program& program) {
-  auto arguments = std::make_shared<MonitorArguments>();
-  arguments->curves = {"attitude.pitch", "leveling.speed", "gyro_raw.z"};
-  Command* command = root.add_subcommand(
-      "monitor", "Show a robot's telemetry live and send it heartbeats as its ground station");
-  add_link_options(*command, arguments->link);
-  add_key_option(*command, arguments->link);
-  command->add_option("--log", arguments->log, "Append every frame to this candump log")
+  auto [command, arguments] = add_subcommand<MonitorArguments>(
+      root, program, "monitor",
+      "Show a robot's telemetry live and send it heartbeats as its ground station",
+      [](const MonitorArguments& given) {
+        catch_interrupts();
+        return Monitor(given).run();
+      });
+  add_link_options(command, arguments.link);
+  add_key_option(command, arguments.link);
+  command.add_option("--log", arguments.log, "Append every frame to this candump log")
       ->type_name("FILE");
   command
-      ->add_option("--curves", arguments->curves,
-                   "Signals to draw, e.g. attitude.pitch,motors.duty_left")
+      .add_option("--curves", arguments.curves,
+                  "Signals to draw, e.g. attitude.pitch,motors.duty_left")
       ->delimiter(',');
-  command->add_option("--board", arguments->board, "Board of the robots, for the slip of tracks")
+  command.add_option("--board", arguments.board, "Board of the robots, for the slip of tracks")
       ->type_name("NAME")
       ->show_default();
   add_number(
-      *command, "--cells", arguments->cells,
+      command, "--cells", arguments.cells,
       "NiMH cells of the robot's battery in series, for its charge in per cent; 0: not shown "
       "(default: the battery of the board's robot)",
       {0, 20});
-  command->add_flag("--listen", arguments->listen,
-                    "Send no heartbeats: another ground station is in charge");
-  command->add_flag("--plain", arguments->plain,
-                    "Print one text report per second instead of a full-screen page (default "
-                    "without a terminal)");
-  command->add_flag("--once", arguments->once, "Print one report and exit");
-  add_number(*command, "--duration", arguments->duration_s, "Exit after this time [s]; 0: never",
+  command.add_flag("--listen", arguments.listen,
+                   "Send no heartbeats: another ground station is in charge");
+  command.add_flag("--plain", arguments.plain,
+                   "Print one text report per second instead of a full-screen page (default "
+                   "without a terminal)");
+  command.add_flag("--once", arguments.once, "Print one report and exit");
+  add_number(command, "--duration", arguments.duration_s, "Exit after this time [s]; 0: never",
              {0.0, 1e9});
-  command->callback([arguments, &program] {
-    program.action = [arguments] {
-      catch_interrupts();
-      return Monitor(*arguments).run();
-    };
-  });
 }
 
 }  // namespace screed

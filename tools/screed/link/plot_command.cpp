@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
-#include <memory>
 #include <set>
 
 #include "host_sim/core/atomic_file.h"
@@ -145,32 +144,29 @@ int run_plot(const PlotOptions& options, std::ostream& err) {
 }
 
 void register_plot_command(Command& root, Program& program) {
-  const auto options = std::make_shared<PlotOptions>();
-  Command* command = root.add_subcommand(
-      "plot", "Plot signals of a radio log over time: a panel for each unit, states as bands");
-  command->add_option("LOG", options->log, "Log as written by candump -L; -: standard input")
+  auto [command, options] = add_subcommand<PlotOptions>(
+      root, program, "plot",
+      "Plot signals of a radio log over time: a panel for each unit, states as bands",
+      [](const PlotOptions& given) { return run_plot(given, std::cerr); });
+  command.add_option("LOG", options.log, "Log as written by candump -L; -: standard input")
       ->required();
   command
-      ->add_option("SIGNALS", options->signals,
-                   "Signals to plot, e.g. attitude.pitch leveling.state heartbeat.faults "
-                   "(docs/telemetry.md)")
+      .add_option("SIGNALS", options.signals,
+                  "Signals to plot, e.g. attitude.pitch leveling.state heartbeat.faults "
+                  "(docs/telemetry.md)")
       ->required();
-  command->add_option("--out", options->out, "Output picture, .svg or .png")
+  command.add_option("--out", options.out, "Output picture, .svg or .png")
       ->type_name("FILE")
       ->required();
-  add_number(*command, "--robot", options->robot, "Plot one robot only", {1, 15});
-  add_number(*command, "--from", options->from_s, "Start, after the log's first message [s]",
+  add_number(command, "--robot", options.robot, "Plot one robot only", {1, 15});
+  add_number(command, "--from", options.from_s, "Start, after the log's first message [s]",
              {0.0, 1e9});
-  add_number(*command, "--to", options->to_s, "End, after the log's first message [s]", {0.0, 1e9});
-  add_number(*command, "--width", options->width_px,
-             "Width of the SVG [px]; a PNG has twice as many",
+  add_number(command, "--to", options.to_s, "End, after the log's first message [s]", {0.0, 1e9});
+  add_number(command, "--width", options.width_px, "Width of the SVG [px]; a PNG has twice as many",
              {kMinChartWidth_px, kMaxChartSide_px});
-  add_number(*command, "--height", options->height_px,
+  add_number(command, "--height", options.height_px,
              "Height of the SVG [px]; a PNG has twice as many (default: what the panels need)",
              {kMinChartHeight_px, kMaxChartSide_px});
-  command->callback([options, &program] {
-    program.action = [options] { return run_plot(*options, std::cerr); };
-  });
 }
 
 }  // namespace screed

@@ -1,10 +1,7 @@
 // `screed model check`: what Screed finds in a robot model, and what is doubtful about it.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
-#include <iostream>
-#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -12,6 +9,7 @@
 #include "host_sim/core/constants.h"
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/core/json.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/physics/vehicle/model_report.h"
@@ -43,12 +41,6 @@ struct CheckedModel {
   Assembly robot;
   ModelReport report;
 };
-
-std::string fixed(double value, int decimals) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
-  return buffer;
-}
 
 std::string shipped_robots() {
   std::vector<std::string> names = {"rover5"};  // of its board
@@ -122,16 +114,16 @@ void compare_with_board(const std::string& board, CheckedModel& model) {
   const double radius_of_board =
       constants.count_um_q4 / 16.0 * 1e-6 * motor.counts_per_turn / (2.0 * std::numbers::pi);
   if (std::abs(radius / radius_of_board - 1.0) > kTolerance) {
-    warnings.push_back(
-        "board " + board + " counts distance for wheels of " + fixed(kMilli * radius_of_board, 1) +
-        " mm: with " + fixed(kMilli * radius, 1) + " mm the robot drives " +
-        fixed(radius / radius_of_board, 2) + " times as far and as fast as its firmware reckons");
+    warnings.push_back(filled(
+        "board {} counts distance for wheels of {*1000:.1f} mm: with {*1000:.1f} mm the robot "
+        "drives {:.2f} times as far and as fast as its firmware reckons",
+        board, radius_of_board, radius, radius / radius_of_board));
   }
   const double tread_of_board = constants.tread_mm / kMilli;
   if (std::abs(model.report.tread_m / tread_of_board - 1.0) > kTolerance) {
-    warnings.push_back("board " + board + " steers for a tread of " +
-                       fixed(kMilli * tread_of_board, 0) + " mm; this one is " +
-                       fixed(kMilli * model.report.tread_m, 0) + " mm");
+    warnings.push_back(
+        filled("board {} steers for a tread of {*1000:.0f} mm; this one is {*1000:.0f} mm", board,
+               tread_of_board, model.report.tread_m));
   }
   int motors = 0;
   for (const auto& side : model.robot.wheels) {
@@ -141,9 +133,10 @@ void compare_with_board(const std::string& board, CheckedModel& model) {
   const double force = motors * motor.motor.torque_per_ampere() * stall_a / radius;
   const double weight = model.report.mass_kg * kGravity_m_per_s2;
   if (force < kMinForceShare * weight) {
-    warnings.push_back("board " + board + "'s motors push with " + fixed(force, 1) +
-                       " N at most, " + fixed(100.0 * force / weight, 0) +
-                       " % of the robot's weight: it stops on slopes");
+    warnings.push_back(
+        filled("board {}'s motors push with {:.1f} N at most, {:.0f} % of the robot's "
+               "weight: it stops on slopes",
+               board, force, 100.0 * force / weight));
   }
 }
 
@@ -154,19 +147,23 @@ Json list_of(const Eigen::Vector3d& v) {
 Json describe(const CheckedModel& model) {
   const ModelReport& r = model.report;
   const auto name = [&](int body) { return model.robot.bodies[static_cast<size_t>(body)].name; };
-  Json json;
-  json["file"] = model.file.string();
-  json["robot"] = model.robot.name;
-  json["links"] = model.robot.bodies.size();
-  json["joints"] = model.robot.joints.size();
-  json["chassis"] = name(model.robot.chassis);
-  json["mass_kg"] = r.mass_kg;
-  json["centre_of_mass_m"] = list_of(r.centre);
-  json["inertia_kg_m2"] = {{"ixx", r.inertia(0, 0)}, {"iyy", r.inertia(1, 1)},
-                           {"izz", r.inertia(2, 2)}, {"ixy", r.inertia(0, 1)},
-                           {"ixz", r.inertia(0, 2)}, {"iyz", r.inertia(1, 2)}};
-  json["imu"] = {{"link", model.robot.imu < 0 ? Json(nullptr) : Json(name(model.robot.imu))},
-                 {"place_m", list_of(r.imu)}};
+  Json json = {{"file", model.file.string()},
+               {"robot", model.robot.name},
+               {"links", model.robot.bodies.size()},
+               {"joints", model.robot.joints.size()},
+               {"chassis", name(model.robot.chassis)},
+               {"mass_kg", r.mass_kg},
+               {"centre_of_mass_m", list_of(r.centre)},
+               {"inertia_kg_m2",
+                {{"ixx", r.inertia(0, 0)},
+                 {"iyy", r.inertia(1, 1)},
+                 {"izz", r.inertia(2, 2)},
+                 {"ixy", r.inertia(0, 1)},
+                 {"ixz", r.inertia(0, 2)},
+                 {"iyz", r.inertia(1, 2)}}},
+               {"imu",
+                {{"link", model.robot.imu < 0 ? Json() : Json(name(model.robot.imu))},
+                 {"place_m", list_of(r.imu)}}}};
   json["wheels"] = Json::array();
   for (const size_t end : {0U, 1U}) {
     for (const size_t side : {0U, 1U}) {
@@ -188,62 +185,47 @@ Json describe(const CheckedModel& model) {
   return json;
 }
 
-void print_row(const char* what, const std::string& value) {
-  std::printf("%-16s%s\n", what, value.c_str());
-}
-
-std::string place(const Eigen::Vector3d& at) {
+std::string place(const Json& at) {
   // Rounded before it is printed, and + 0.0: no "-0.0".
-  const Eigen::Vector3d mm = ((kMilli * 10.0 * at).array().round() / 10.0 + 0.0).matrix();
-  char buffer[96];
-  std::snprintf(buffer, sizeof buffer, "x %.1f, y %.1f, z %.1f mm", mm.x(), mm.y(), mm.z());
-  return buffer;
+  const auto tenths = [](const Json& m) {
+    return std::round(kMilli * 10.0 * m.get<double>()) / 10.0 + 0.0;
+  };
+  return filled("x {:.1f}, y {:.1f}, z {:.1f} mm", tenths(at[0]), tenths(at[1]), tenths(at[2]));
 }
 
-void print(const CheckedModel& model) {
-  const ModelReport& r = model.report;
-  const Assembly& robot = model.robot;
-  const auto name = [&](int body) { return robot.bodies[static_cast<size_t>(body)].name; };
-  std::printf("%s: robot '%s', %zu links, %zu joints\n\n", model.file.c_str(), robot.name.c_str(),
-              robot.bodies.size(), robot.joints.size());
-  print_row("chassis", name(robot.chassis));
-  print_row("mass", fixed(r.mass_kg, 3) + " kg, centre " + place(r.centre));
-  char inertia[96];
-  std::snprintf(inertia, sizeof inertia, "Ixx %.3g, Iyy %.3g, Izz %.3g kg m^2", r.inertia(0, 0),
-                r.inertia(1, 1), r.inertia(2, 2));
-  print_row("inertia", inertia);
-  print_row("IMU", (robot.imu < 0 ? std::string("at the origin of the chassis")
-                                  : name(robot.imu) + ", " + place(r.imu)));
-  print_row("wheelbase", fixed(kMilli * r.wheelbase_m, 1) + " mm");
-  print_row("tread", fixed(kMilli * r.tread_m, 1) + " mm");
-  print_row("clearance", std::isfinite(r.clearance_m) ? fixed(kMilli * r.clearance_m, 1) + " mm"
-                                                      : std::string("none"));
-  std::printf("\n%-16s%10s%10s   %-34s%-8s%-20s%s\n", "wheel", "radius", "width", "centre", "motor",
-              "from", "link");
-  for (const size_t end : {0U, 1U}) {
-    for (const size_t side : {0U, 1U}) {
-      const AssemblyWheel& wheel = robot.wheels[side][end];
-      std::printf("%-16s%7s mm%7s mm   %-34s%-8s%-20s%s\n", kCorners[side][end],
-                  fixed(kMilli * wheel.radius_m, 1).c_str(),
-                  fixed(kMilli * wheel.width_m, 1).c_str(), place(wheel.centre).c_str(),
-                  is_driven(robot, wheel) ? "yes" : "no", wheel.source, name(wheel.body).c_str());
-    }
+void print_model(const Json& json) {
+  const auto row = [&](const char* what, const std::string& text) {
+    print("{:-16s}{}\n", what, filled(text, json));
+  };
+  print("{file}: robot '{robot}', {links} links, {joints} joints\n\n", json);
+  row("chassis", "{chassis}");
+  row("mass", "{mass_kg:.3f} kg, centre " + place(json["centre_of_mass_m"]));
+  row("inertia",
+      "Ixx {inertia_kg_m2.ixx:.3g}, Iyy {inertia_kg_m2.iyy:.3g}, Izz {inertia_kg_m2.izz:.3g} kg "
+      "m^2");
+  row("IMU", json["imu"]["link"].is_null() ? "at the origin of the chassis"
+                                           : "{imu.link}, " + place(json["imu"]["place_m"]));
+  row("wheelbase", "{wheelbase_m*1000:.1f} mm");
+  row("tread", "{tread_m*1000:.1f} mm");
+  row("clearance", json["clearance_m"].is_null() ? "none" : "{clearance_m*1000:.1f} mm");
+  print("\n{:-16s}{:10s}{:10s}   {:-34s}{:-8s}{:-20s}{}\n", "wheel", "radius", "width", "centre",
+        "motor", "from", "link");
+  for (const Json& wheel : json["wheels"]) {
+    print("{corner:-16s}{radius_m*1000:7.1f} mm{width_m*1000:7.1f} mm   ", wheel);
+    print("{:-34s}{:-8s}", place(wheel["centre_m"]), wheel["driven"].get<bool>() ? "yes" : "no");
+    print("{source:-20s}{link}\n", wheel);
   }
-  std::printf("\n");
-  for (const std::string& warning : r.warnings) std::printf("warning: %s\n", warning.c_str());
-  std::printf("%s\n", r.warnings.empty()
-                          ? "no warnings"
-                          : (std::to_string(r.warnings.size()) + " warnings").c_str());
+  print("\n");
+  const Json& warnings = json["warnings"];
+  for (const Json& warning : warnings) print("warning: {}\n", warning);
+  print(warnings.empty() ? "no warnings\n" : "{} warnings\n", warnings.size());
 }
 
-int run_check(const ModelArguments& arguments) {
+int check_model(const ModelArguments& arguments) {
   CheckedModel model = read_model(arguments);
   compare_with_board(arguments.board, model);
-  if (arguments.json) {
-    std::cout << describe(model).dump(2, Json::BadText::kReplace) << "\n";
-  } else {
-    print(model);
-  }
+  const Json json = describe(model);
+  arguments.json ? print_json(json) : print_model(json);
   return 0;
 }
 
@@ -251,25 +233,23 @@ int run_check(const ModelArguments& arguments) {
 
 void register_model_command(Command& root, Program& program) {
   Command* model = root.add_subcommand("model", "Check a robot model (URDF)");
-  Command* command = model->add_subcommand(
-      "check", "Print what is found in a robot model: chassis, mass, wheels, what is doubtful");
-  const auto arguments = std::make_shared<ModelArguments>();
+  auto [command, arguments] = add_subcommand<ModelArguments>(
+      *model, program, "check",
+      "Print what is found in a robot model: chassis, mass, wheels, what is doubtful", check_model);
   command
-      ->add_option("FILE", arguments->file,
-                   "URDF file, experiment that names one, or robot or experiment that comes with "
-                   "Screed")
+      .add_option("FILE", arguments.file,
+                  "URDF file, experiment that names one, or robot or experiment that comes with "
+                  "Screed")
       ->required();
-  command->add_option("--board", arguments->board, "Board that drives the robot")->show_default();
-  command->add_option("--chassis-link", arguments->chassis_link,
-                      "Link of the chassis (default: Body, base_link or the root)");
-  command->add_option("--wheel-links", arguments->wheel_links,
-                      "Links of the wheels: \"FRONT_LEFT FRONT_RIGHT REAR_LEFT REAR_RIGHT\" "
-                      "(default: by their names and places)");
-  command->add_option("--imu-link", arguments->imu_link,
-                      "Link of the IMU (default: Imu, imu_link or the origin of the chassis)");
-  command->add_flag("--json", arguments->json, "Print JSON");
-  command->callback(
-      [arguments, &program] { program.action = [arguments] { return run_check(*arguments); }; });
+  command.add_option("--board", arguments.board, "Board that drives the robot")->show_default();
+  command.add_option("--chassis-link", arguments.chassis_link,
+                     "Link of the chassis (default: Body, base_link or the root)");
+  command.add_option("--wheel-links", arguments.wheel_links,
+                     "Links of the wheels: \"FRONT_LEFT FRONT_RIGHT REAR_LEFT REAR_RIGHT\" "
+                     "(default: by their names and places)");
+  command.add_option("--imu-link", arguments.imu_link,
+                     "Link of the IMU (default: Imu, imu_link or the origin of the chassis)");
+  command.add_flag("--json", arguments.json, "Print JSON");
 }
 
 }  // namespace screed

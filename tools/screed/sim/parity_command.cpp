@@ -1,14 +1,13 @@
 // `screed parity FILE`: does the image compute what the host computes? Exit codes: 0 no byte
 // differs, 1 one does, 2 wrong input.
 #include <chrono>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "host_sim/core/json.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/parity.h"
@@ -34,39 +33,28 @@ struct ParityArguments {
   bool json = false;
 };
 
-void print_json(const ParityArguments& arguments, const ParityResult& result, double factor) {
-  Json json;
-  json["experiment"] = arguments.file;
-  json["board"] = arguments.board;
-  json["ticks"] = result.ticks;
-  json["driving_ticks"] = result.driving_ticks;
-  json["compared_bytes"] = result.compared_bytes;
-  json["differing_bytes"] = result.differing_bytes;
-  json["first_difference_tick"] = nullptr;
-  json["first_difference"] = nullptr;
-  if (result.first_difference_tick.has_value()) {
-    json["first_difference_tick"] = *result.first_difference_tick;
-    json["first_difference"] = result.first_difference;
-  }
-  json["simulated_s"] = result.simulated_s;
-  json["real_time_factor"] = factor;
-  // A path need not be UTF-8; JSON must.
-  std::cout << json.dump(2, Json::BadText::kReplace) << "\n";
+Json json_of(const ParityArguments& arguments, const ParityResult& result, double factor) {
+  const bool differs = result.first_difference_tick.has_value();
+  return {{"experiment", arguments.file},
+          {"board", arguments.board},
+          {"ticks", result.ticks},
+          {"driving_ticks", result.driving_ticks},
+          {"compared_bytes", result.compared_bytes},
+          {"differing_bytes", result.differing_bytes},
+          {"first_difference_tick", differs ? Json(*result.first_difference_tick) : Json()},
+          {"first_difference", differs ? Json(result.first_difference) : Json()},
+          {"simulated_s", result.simulated_s},
+          {"real_time_factor", factor}};
 }
 
-void print_text(const ParityArguments& arguments, const ParityResult& result, double factor) {
-  std::printf("%s on %s: %llu ticks (%llu driving), %llu bytes compared, %llu differ\n",
-              arguments.file.c_str(), arguments.board.c_str(),
-              static_cast<unsigned long long>(result.ticks),
-              static_cast<unsigned long long>(result.driving_ticks),
-              static_cast<unsigned long long>(result.compared_bytes),
-              static_cast<unsigned long long>(result.differing_bytes));
-  if (result.first_difference_tick.has_value()) {
-    std::printf("first difference at tick %llu: %s\n",
-                static_cast<unsigned long long>(*result.first_difference_tick),
-                result.first_difference.c_str());
-  }
-  std::printf("%.1f s simulated, real-time factor %.1f\n", result.simulated_s, factor);
+void print_parity(const Json& json) {
+  print(
+      "{experiment} on {board}: {ticks} ticks ({driving_ticks} driving), "
+      "{compared_bytes} bytes compared, {differing_bytes} differ\n",
+      json);
+  if (!json["first_difference"].is_null())
+    print("first difference at tick {first_difference_tick}: {first_difference}\n", json);
+  print("{simulated_s:.1f} s simulated, real-time factor {real_time_factor:.1f}\n", json);
 }
 
 int run_parity_command(const ParityArguments& arguments) {
@@ -94,11 +82,8 @@ int run_parity_command(const ParityArguments& arguments) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double factor = wall_s > 0.0 ? result.simulated_s / wall_s : 0.0;
   if (bar.has_value()) bar->finish();
-  if (arguments.json) {
-    print_json(arguments, result, factor);
-  } else {
-    print_text(arguments, result, factor);
-  }
+  const Json json = json_of(arguments, result, factor);
+  arguments.json ? print_json(json) : print_parity(json);
   if (interrupted()) {
     std::cerr << "note: stopped after " << result.simulated_s << " s of " << seconds << " s\n";
   }
@@ -108,27 +93,24 @@ int run_parity_command(const ParityArguments& arguments) {
 }  // namespace
 
 void register_parity_command(Command& root, Program& program) {
-  Command* command = root.add_subcommand(
-      "parity",
+  auto [command, arguments] = add_subcommand<ParityArguments>(
+      root, program, "parity",
       "Run the flash image in a simulated world and compare every output byte "
       "with the firmware compiled for this machine. Of several robots the first is the "
-      "image");
-  const auto arguments = std::make_shared<ParityArguments>();
-  command->add_option("FILE", arguments->file, "Experiment file (INI)")->required();
-  command->add_option("--board", arguments->board,
-                      std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");
-  command->add_option("--elf", arguments->elf, "ELF image (default: the one of make firmware)")
+      "image",
+      run_parity_command);
+  command.add_option("FILE", arguments.file, "Experiment file (INI)")->required();
+  command.add_option("--board", arguments.board,
+                     std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");
+  command.add_option("--elf", arguments.elf, "ELF image (default: the one of make firmware)")
       ->type_name("FILE");
-  add_number(*command, "--minutes", arguments->minutes, "Simulated time [min] (default: 1)",
+  add_number(command, "--minutes", arguments.minutes, "Simulated time [min] (default: 1)",
              {0.01, 10000.0});
-  command->add_option("--set", arguments->sets, "Override a key: section.key=value")
+  command.add_option("--set", arguments.sets, "Override a key: section.key=value")
       ->type_name("KEY=VALUE")
       ->one_value_each();
-  command->add_flag("--quiet", arguments->quiet, "Show no progress");
-  command->add_flag("--json", arguments->json, "Print the result as JSON");
-  command->callback([arguments, &program] {
-    program.action = [arguments] { return run_parity_command(*arguments); };
-  });
+  command.add_flag("--quiet", arguments.quiet, "Show no progress");
+  command.add_flag("--json", arguments.json, "Print the result as JSON");
 }
 
 }  // namespace screed

@@ -1,9 +1,8 @@
 // `screed record FILE...`: training sessions.
-#include <cstdio>
 #include <iostream>
-#include <memory>
 #include <optional>
 
+#include "host_sim/core/figures.h"
 #include "host_sim/run/experiment/vehicle_sections.h"
 #include "host_sim/run/simulation/outcome.h"
 #include "tools/screed/cli/command.h"
@@ -27,24 +26,26 @@ void add_seed(std::uint64_t seed, std::vector<std::string>& overrides) {
   overrides.push_back("parameters.random_seed=" + std::to_string(seed % 32768U));
 }
 
+/// " (FAULT)"; empty without one.
+std::string with_faults(const SimulationSummary& s) {
+  return s.faults != 0 ? " (" + fault_names(s.faults) + ")" : "";
+}
+
 void print_session(const SimulationSummary& s) {
-  const double megabytes =
-      static_cast<double>(std::filesystem::file_size(s.folder / "session.h5")) * 1e-6;
-  std::printf("  %-26s %12llu\n", "frames of Algorithm 5",
-              static_cast<unsigned long long>(s.training_frames));
-  std::printf("  %-26s %10.1f m\n", "distance driven", s.distance_m);
-  std::printf("  %-26s %12llu\n", "changes of heights",
-              static_cast<unsigned long long>(s.height_changes));
-  std::printf("  %-26s %9.1f MB\n", "session", megabytes);
-  std::printf("  %-26s %10.1f s  (%.2f ms a frame)\n", "recorded in", s.wall_s,
-              s.time_s > 0.0 ? s.wall_s / s.time_s * 10.0 : 0.0);
-  std::printf("  %-26s %12s%s\n", "robot", s.state.c_str(),
-              s.faults != 0 ? (" (" + fault_names(s.faults) + ")").c_str() : "");
-  std::printf("  %-26s %12s\n", "run folder", s.folder.c_str());
-  std::printf("  %-26s %12s\n", "content hash", s.content_hash.c_str());
+  const auto session_bytes = std::filesystem::file_size(s.folder / "session.h5");
+  print("  {:-26s} {:12s}\n", "frames of Algorithm 5", s.training_frames);
+  print("  {:-26s} {:10.1f} m\n", "distance driven", s.distance_m);
+  print("  {:-26s} {:12s}\n", "changes of heights", s.height_changes);
+  print("  {:-26s} {*1e-6:9.1f} MB\n", "session", session_bytes);
+  print("  {:-26s} {:10.1f} s  ({:.2f} ms a frame)\n", "recorded in", s.wall_s,
+        s.time_s > 0.0 ? s.wall_s / s.time_s * 10.0 : 0.0);
+  print("  {:-26s} {:12s}{}\n", "robot", s.state, with_faults(s));
+  print("  {:-26s} {:12s}\n", "run folder", s.folder);
+  print("  {:-26s} {:12s}\n", "content hash", s.content_hash);
 }
 
 int run_record(const RecordArguments& arguments, const std::string& version) {
+  if (arguments.runs.files.empty()) throw UsageError("FILE is required", "screed record");
   std::vector<std::string> overrides = {std::string("experiment.algorithm=") + kTrainingDriveName};
   if (arguments.seed.has_value()) add_seed(*arguments.seed, overrides);
   if (arguments.frames.has_value())
@@ -64,16 +65,14 @@ int run_record(const RecordArguments& arguments, const std::string& version) {
                 short_of_frames = true;
                 std::cerr << "note: " << experiment.experiment.name << ": "
                           << summary.training_frames << " of " << wanted << " frames; the robot is "
-                          << summary.state
-                          << (summary.faults != 0 ? " (" + fault_names(summary.faults) + ")" : "")
+                          << summary.state << with_faults(summary)
                           << (summary.left_bed ? ", it left the bed" : "") << "\n";
               }
               if (arguments.runs.json) return;
               if (arguments.runs.quiet) {
-                std::printf("%s %s\n", summary.folder.c_str(), summary.content_hash.c_str());
+                print("{} {}\n", summary.folder, summary.content_hash);
               } else {
-                std::printf("\n%s, seed %llu\n", experiment.experiment.name.c_str(),
-                            static_cast<unsigned long long>(experiment.experiment.seed));
+                print("\n{}, seed {}\n", experiment.experiment.name, experiment.experiment.seed);
                 print_session(summary);
               }
             });
@@ -85,25 +84,20 @@ int run_record(const RecordArguments& arguments, const std::string& version) {
 }  // namespace
 
 void register_record_command(Command& root, Program& program) {
-  auto arguments = std::make_shared<RecordArguments>();
-  Command* command = root.add_subcommand("record",
-                                         "Record training sessions: run the training drive "
-                                         "(Algorithm 5) and record the height map of every frame");
-  add_batch_options(*command, arguments->runs);
+  auto [command, arguments] =
+      add_subcommand<RecordArguments>(root, program, "record",
+                                      "Record training sessions: run the training drive "
+                                      "(Algorithm 5) and record the height map of every frame",
+                                      run_record);
+  add_batch_options(command, arguments.runs);
   add_number(
-      *command, "--seed", arguments->seed,
+      command, "--seed", arguments.seed,
       "Seed of world and training drive; overrides [experiment] seed and [parameters] random_seed",
       kSeedRange);
-  add_number(*command, "--frames", arguments->frames,
+  add_number(command, "--frames", arguments.frames,
              "Number of frames of the training drive; overrides [experiment] frames",
              {.low = 8, .high = kMaxFrames, .multiple_of = 8});
-  command->add_flag("--csv", arguments->csv, "Also write frames.csv");
-  command->callback([arguments, &program] {
-    if (arguments->runs.files.empty()) throw UsageError("FILE is required");
-    program.action = [arguments, version = program.version] {
-      return run_record(*arguments, version);
-    };
-  });
+  command.add_flag("--csv", arguments.csv, "Also write frames.csv");
 }
 
 }  // namespace screed

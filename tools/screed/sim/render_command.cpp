@@ -1,7 +1,6 @@
 // `screed render`: one frame of a recorded run as a ray-traced picture.
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -64,36 +63,34 @@ int run_render(RenderOptions options) {
 }  // namespace
 
 void register_render_command(Command& root, Program& program) {
-  Command* command = root.add_subcommand(
-      "render", "Render one frame of a recorded run as a ray-traced picture (needs povray)");
-  const auto options = std::make_shared<RenderOptions>();
-  command->add_option("RUN", options->run, "Run folder or session.h5")->required();
-  add_number(*command, "--frame", options->scene.frame,
+  auto [command, options] = add_subcommand<RenderOptions>(
+      root, program, "render",
+      "Render one frame of a recorded run as a ray-traced picture (needs povray)", run_render);
+  command.add_option("RUN", options.run, "Run folder or session.h5")->required();
+  add_number(command, "--frame", options.scene.frame,
              "Frame to render, from 0; negative counts from the end (default: the last)",
              {-1e9, 1e9});
   command
-      ->add_option("--out", options->out,
-                   "Output picture, .png or .jpg (default: RUN/frame_N.png); the scene, .pov, "
-                   "and its images are written beside it")
+      .add_option("--out", options.out,
+                  "Output picture, .png or .jpg (default: RUN/frame_N.png); the scene, .pov, "
+                  "and its images are written beside it")
       ->type_name("FILE");
-  add_number(*command, "--width", options->scene.width_px, "Width of the picture [px]", {16, 8000});
-  add_number(*command, "--height", options->scene.height_px, "Height of the picture [px]",
+  add_number(command, "--width", options.scene.width_px, "Width of the picture [px]", {16, 8000});
+  add_number(command, "--height", options.scene.height_px, "Height of the picture [px]",
              {16, 8000});
   command
-      ->add_option("--camera", options->camera,
-                   "Camera: front, back, side, above, bed, or AZIMUTH,ELEVATION,DISTANCE round the "
-                   "robot [degrees from its nose, degrees above the horizon, m]")
+      .add_option("--camera", options.camera,
+                  "Camera: front, back, side, above, bed, or AZIMUTH,ELEVATION,DISTANCE round the "
+                  "robot [degrees from its nose, degrees above the horizon, m]")
       ->type_name("VIEW")
       ->show_default();
-  command->add_option("--model", options->model, "URDF of the robot (default: the experiment's)")
+  command.add_option("--model", options.model, "URDF of the robot (default: the experiment's)")
       ->type_name("FILE");
-  command->add_flag("--no-path", options->no_path, "Do not draw the driven path");
-  command->add_flag("--no-tint", options->no_tint,
-                    "Leave the terrain in its own colours, without heights and colour bar");
-  command->add_flag("--pov-only", options->scene.pov_only, "Write the scene without rendering it");
-  command->add_flag("--quiet", options->quiet, "Show no progress");
-  command->callback(
-      [options, &program] { program.action = [options] { return run_render(*options); }; });
+  command.add_flag("--no-path", options.no_path, "Do not draw the driven path");
+  command.add_flag("--no-tint", options.no_tint,
+                   "Leave the terrain in its own colours, without heights and colour bar");
+  command.add_flag("--pov-only", options.scene.pov_only, "Write the scene without rendering it");
+  command.add_flag("--quiet", options.quiet, "Show no progress");
 }
 
 }  // namespace screed

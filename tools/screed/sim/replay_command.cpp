@@ -2,10 +2,10 @@
 // are identical, 1 they differ, 2 wrong RUN.
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/figures.h"
 #include "host_sim/core/json.h"
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/run_folder.h"
@@ -22,20 +22,15 @@ struct ReplayOptions {
 };
 
 Json json_of(const std::string& run, const ReplayResult& result) {
-  Json json;
-  json["run"] = run;
-  json["ticks"] = result.ticks;
-  json["identical"] = !result.first_difference_tick;
-  json["first_difference_tick"] = nullptr;
-  json["first_difference"] = nullptr;
-  if (result.first_difference_tick) {
-    json["first_difference_tick"] = *result.first_difference_tick;
-    json["first_difference"] = result.first_difference;
-  }
-  json["output_hash"] = result.output_hash;
-  json["complete"] = result.complete;
-  json["unchanged"] = result.unchanged;
-  return json;
+  const bool differs = result.first_difference_tick.has_value();
+  return {{"run", run},
+          {"ticks", result.ticks},
+          {"identical", !differs},
+          {"first_difference_tick", differs ? Json(*result.first_difference_tick) : Json()},
+          {"first_difference", differs ? Json(result.first_difference) : Json()},
+          {"output_hash", result.output_hash},
+          {"complete", result.complete},
+          {"unchanged", result.unchanged}};
 }
 
 /// The first robot of a run, with the others, if there are any, as a list.
@@ -44,8 +39,7 @@ void print_json(const std::string& run, const std::vector<ReplayResult>& results
   for (size_t i = 1; i < results.size(); ++i) {
     json["further_robots"].push_back(json_of(folder_of_robot(run, i).string(), results[i]));
   }
-  // A path need not be UTF-8; JSON must.
-  std::cout << json.dump(-1, Json::BadText::kReplace) << "\n";
+  print_json(json, -1);
 }
 
 void print_text(const std::string& of, const ReplayResult& result) {
@@ -73,7 +67,7 @@ void print_notes(const std::string& of, const ReplayResult& result) {
   }
 }
 
-int run_replay(const ReplayOptions& options) {
+int replay_run(const ReplayOptions& options) {
   const std::vector<std::filesystem::path> files = session_files(options.run);
   std::vector<ReplayResult> results;
   bool identical = true;
@@ -93,13 +87,12 @@ int run_replay(const ReplayOptions& options) {
 }  // namespace
 
 void register_replay_command(Command& root, Program& program) {
-  Command* command = root.add_subcommand(
-      "replay", "Feed a recorded run to the firmware again and compare its outputs byte for byte");
-  const auto options = std::make_shared<ReplayOptions>();
-  command->add_option("RUN", options->run, "Run folder or session.h5")->required();
-  command->add_flag("--json", options->json, "Print the result as JSON");
-  command->callback(
-      [options, &program] { program.action = [options] { return run_replay(*options); }; });
+  auto [command, options] = add_subcommand<ReplayOptions>(
+      root, program, "replay",
+      "Feed a recorded run to the firmware again and compare its outputs byte for byte",
+      replay_run);
+  command.add_option("RUN", options.run, "Run folder or session.h5")->required();
+  command.add_flag("--json", options.json, "Print the result as JSON");
 }
 
 }  // namespace screed

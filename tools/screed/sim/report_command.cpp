@@ -1,8 +1,6 @@
 // `screed report`: a recorded run, or a campaign, as one HTML page.
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +12,7 @@
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/engine/result_store.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/run_setup.h"
@@ -54,9 +53,7 @@ fs::path page_path(const ReportOptions& options, const fs::path& usual) {
 
 int write_page(const fs::path& out, const std::string& text) {
   write_file(out, text);
-  char size[32];
-  std::snprintf(size, sizeof size, "%.2f MB", static_cast<double>(text.size()) * 1e-6);
-  std::cout << out.string() << ": " << size << "\n";
+  print("{}: {*1e-6:.2f} MB\n", out, text.size());
   return 0;
 }
 
@@ -119,35 +116,33 @@ int run_report(const ReportOptions& options) {
 }  // namespace
 
 void register_report_command(Command& root, Program& program) {
-  Command* command = root.add_subcommand(
-      "report",
+  auto [command, options] = add_subcommand<ReportOptions>(
+      root, program, "report",
       "Write a recorded run, a robot's telemetry log or a campaign as one HTML page: terrain over "
-      "time, path, curves, figures; means, differences, ranks");
-  const auto options = std::make_shared<ReportOptions>();
+      "time, path, curves, figures; means, differences, ranks",
+      run_report);
   command
-      ->add_option("RUN", options->of,
-                   "Run folder, session.h5, log as written by candump -L, or folder of a campaign")
+      .add_option("RUN", options.of,
+                  "Run folder, session.h5, log as written by candump -L, or folder of a campaign")
       ->required();
   command
-      ->add_option(
-          "--out", options->out,
+      .add_option(
+          "--out", options.out,
           "Output page, .html; replaced where it exists (default: report.html in the folder, of a "
           "log the page beside it")
       ->type_name("FILE");
   command
-      ->add_option("--metric", options->metric,
-                   "Column of runs.csv that the page of a campaign shows first")
+      .add_option("--metric", options.metric,
+                  "Column of runs.csv that the page of a campaign shows first")
       ->type_name("NAME");
-  add_number(*command, "--baseline", options->baseline,
+  add_number(command, "--baseline", options.baseline,
              "Cell that the others of a campaign are compared with (default: 0)", {0, 1e6});
-  command->add_flag("--incomplete", options->incomplete,
-                    "Report a campaign although runs are missing; the page says so");
-  command->add_option("--board", options->board, "Board of the robots of a log")
+  command.add_flag("--incomplete", options.incomplete,
+                   "Report a campaign although runs are missing; the page says so");
+  command.add_option("--board", options.board, "Board of the robots of a log")
       ->type_name("NAME")
       ->show_default();
-  command->add_flag("--quiet", options->quiet, "Show no progress");
-  command->callback(
-      [options, &program] { program.action = [options] { return run_report(*options); }; });
+  command.add_flag("--quiet", options.quiet, "Show no progress");
 }
 
 }  // namespace screed

@@ -1,10 +1,8 @@
 // `screed session info|export RUN`: what a recorded run holds, and its content as files that other
 // programs read.
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +10,7 @@
 #include "commands.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/core/json.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/export.h"
@@ -49,22 +48,21 @@ struct ExportArguments {
 Json describe(const fs::path& file, const SessionReader& session) {
   const SessionInfo& info = session.info();
   const FrameRange training = training_frames(session);
-  Json json;
-  json["file"] = file.string();
-  json["bytes"] = fs::file_size(file);
-  json["experiment"] = info.experiment_name;
-  json["program_version"] = info.program_version;
-  json["arithmetic"] = info.arithmetic;
-  json["board"] = info.board_name;
-  json["seed"] = info.seed;
-  json["random_seed"] = info.parameters.random_seed();
-  json["frames"] = session.frames();
-  json["duration_s"] = static_cast<double>(session.frames()) / info.tick_rate_hz;
-  json["training_first"] = training.first;
-  json["training_frames"] = training.count;
-  json["complete"] = session.complete();
-  json["content_hash"] = session.content_hash();
-  json["missing_columns"] = session.missing_columns();
+  Json json = {{"file", file.string()},
+               {"bytes", fs::file_size(file)},
+               {"experiment", info.experiment_name},
+               {"program_version", info.program_version},
+               {"arithmetic", info.arithmetic},
+               {"board", info.board_name},
+               {"seed", info.seed},
+               {"random_seed", info.parameters.random_seed()},
+               {"frames", session.frames()},
+               {"duration_s", static_cast<double>(session.frames()) / info.tick_rate_hz},
+               {"training_first", training.first},
+               {"training_frames", training.count},
+               {"complete", session.complete()},
+               {"content_hash", session.content_hash()},
+               {"missing_columns", session.missing_columns()}};
   if (session.frames() > 0) {
     std::vector<SimFrame> last(1);
     session.read(session.frames() - 1, std::span(last));
@@ -80,52 +78,38 @@ Json describe(const fs::path& file, const SessionReader& session) {
 }
 
 void print_info(const Json& json) {
-  const auto row = [](const char* name, const std::string& value) {
-    std::printf("%-18s %s\n", name, value.c_str());
+  const auto row = [](const char* name, const char* text, const Json& figures) {
+    print("{:-18s} {}\n", name, filled(text, figures));
   };
-  const auto text = [&](const char* key) {
-    return json[key].is_string() ? json[key].get<std::string>() : json[key].dump();
-  };
-  row("file", text("file"));
-  char size[64];
-  std::snprintf(size, sizeof size, "%.1f MB", json["bytes"].get<double>() * 1e-6);
-  row("size", size);
-  row("experiment", text("experiment"));
-  row("program", text("program_version"));
-  row("arithmetic", text("arithmetic"));
-  row("board", text("board"));
-  row("seed", text("seed") + ", of the drive " + text("random_seed"));
-  row("frames", text("frames") + " (" + text("duration_s") + " s)");
-  if (json["training_frames"].get<std::uint64_t>() > 0) {
-    row("training frames", text("training_frames") + " from frame " + text("training_first"));
-  }
-  if (!json["heights"].is_null()) {
-    const Json& heights = json["heights"];
-    row("height map", heights["nx"].dump() + " x " + heights["ny"].dump() + ", " +
-                          heights["spacing_m"].dump() + " m, " + heights["changes"].dump() +
-                          " changes" +
-                          (heights["wrap"].get<bool>()    ? ", wraps around"
-                           : heights["walls"].get<bool>() ? ", walled"
-                                                          : ""));
+  row("file", "{file}", json);
+  row("size", "{bytes*1e-6:.1f} MB", json);
+  row("experiment", "{experiment}", json);
+  row("program", "{program_version}", json);
+  row("arithmetic", "{arithmetic}", json);
+  row("board", "{board}", json);
+  row("seed", "{seed}, of the drive {random_seed}", json);
+  row("frames", "{frames} ({duration_s} s)", json);
+  if (json["training_frames"].get<std::uint64_t>() > 0)
+    row("training frames", "{training_frames} from frame {training_first}", json);
+  const Json& heights = json["heights"];
+  if (heights.is_null()) {
+    row("height map", "not recorded frame by frame", json);
   } else {
-    row("height map", "not recorded frame by frame");
+    row("height map",
+        heights["wrap"].get<bool>() ? "{nx} x {ny}, {spacing_m} m, {changes} changes, wraps around"
+        : heights["walls"].get<bool>() ? "{nx} x {ny}, {spacing_m} m, {changes} changes, walled"
+                                       : "{nx} x {ny}, {spacing_m} m, {changes} changes",
+        heights);
   }
-  row("content hash",
-      json["complete"].get<bool>() ? text("content_hash") : "none: the run did not end");
-  for (const auto& column : json["missing_columns"])
-    row("missing column", column.get<std::string>());
+  row("content hash", json["complete"].get<bool>() ? "{content_hash}" : "none: the run did not end",
+      json);
+  for (const Json& column : json["missing_columns"]) row("missing column", "{}", column);
 }
 
 int run_info(const InfoArguments& arguments) {
   const fs::path file = session_file(arguments.run);
-  const SessionReader session(file);
-  const Json json = describe(file, session);
-  if (arguments.json) {
-    // A path need not be UTF-8; JSON must.
-    std::cout << json.dump(2, Json::BadText::kReplace) << "\n";
-  } else {
-    print_info(json);
-  }
+  const Json json = describe(file, SessionReader(file));
+  arguments.json ? print_json(json) : print_info(json);
   return 0;
 }
 
@@ -194,10 +178,10 @@ void export_all_pictures(const ExportArguments& arguments, std::span<const Sessi
     throw InputError(paths.file.string() +
                      ": nothing to draw: the run did not end, and has no recorded heights");
   }
-  std::printf("%s: %zu pictures\n", paths.folder.c_str(), count);
+  print("{}: {} pictures\n", paths.folder, count);
 }
 
-int run_export(const ExportArguments& arguments) {
+int export_session(const ExportArguments& arguments) {
   if (!arguments.csv && !arguments.heights && !arguments.leveling && !arguments.pictures) {
     throw InputError(
         "session export: say what: --csv, --heights, --leveling, --pictures or several of them");
@@ -226,11 +210,11 @@ int run_export(const ExportArguments& arguments) {
                        arguments.all ? std::span<const Column>(kFrameColumns) : table_5_1_columns(),
                        range, csv, bar.progress());
     bar.clear();
-    std::printf("%s: %llu frames\n", csv.c_str(), static_cast<unsigned long long>(range.count));
+    print("{}: {} frames\n", csv, range.count);
   }
   if (arguments.leveling) {
     export_leveling_csv(leveling, out / "leveling.csv");
-    std::printf("%s: %zu points\n", (out / "leveling.csv").c_str(), leveling.size());
+    print("{}: {} points\n", out / "leveling.csv", leveling.size());
   }
   if (arguments.heights) {
     constexpr std::uint64_t kEverySecond = 100;
@@ -238,9 +222,8 @@ int run_export(const ExportArguments& arguments) {
         export_heights_png(session, range, arguments.every.value_or(kEverySecond),
                            folders.make(out / "heights"), bar.progress());
     bar.clear();
-    std::printf("%s: %zu height maps, black %.6f m, white %.6f m (scale.json)\n",
-                (out / "heights").c_str(), done.files.size(), done.scale.black_m,
-                done.scale.white_m);
+    print("{}: {} height maps, black {:.6f} m, white {:.6f} m (scale.json)\n", out / "heights",
+          done.files.size(), done.scale.black_m, done.scale.white_m);
   }
   if (arguments.pictures) {
     export_all_pictures(arguments, open_robots(arguments.run), range,
@@ -254,40 +237,34 @@ int run_export(const ExportArguments& arguments) {
 void register_session_command(Command& root, Program& program) {
   Command* session = root.add_subcommand("session", "Inspect, export or compare recorded runs");
 
-  auto info = std::make_shared<InfoArguments>();
-  Command* info_command = session->add_subcommand("info", "Show the content of a session");
-  info_command->add_option("RUN", info->run, "Run folder or session file")->required();
-  info_command->add_flag("--json", info->json, "Print JSON");
-  info_command->callback([info, &program] { program.action = [info] { return run_info(*info); }; });
+  auto [info_command, info] = add_subcommand<InfoArguments>(
+      *session, program, "info", "Show the content of a session", run_info);
+  info_command.add_option("RUN", info.run, "Run folder or session file")->required();
+  info_command.add_flag("--json", info.json, "Print JSON");
 
-  auto exported = std::make_shared<ExportArguments>();
-  Command* command = session->add_subcommand("export", "Export tables, height maps and pictures");
-  command->add_option("RUN", exported->run, "Run folder or session file")->required();
-  command->add_flag("--csv", exported->csv,
-                    "Export thesis Table 5.1 as CSV, with units in the header");
-  command->add_flag(
-      "--all", exported->all,
-      "Export all frames, and with --csv all columns (default: the training drive's)");
-  command->add_flag("--heights", exported->heights,
-                    "Export height maps as 16-bit PNGs, with their scale in scale.json");
-  command->add_flag("--leveling", exported->leveling,
-                    "Export the leveling curve as CSV, with units in the header");
-  command->add_flag(
-      "--pictures", exported->pictures,
-      "Export shaded height maps with the driven path: of the start, the end and what "
-      "changed, and of frames between where heights were recorded");
+  auto [command, exported] = add_subcommand<ExportArguments>(
+      *session, program, "export", "Export tables, height maps and pictures", export_session);
+  command.add_option("RUN", exported.run, "Run folder or session file")->required();
+  command.add_flag("--csv", exported.csv,
+                   "Export thesis Table 5.1 as CSV, with units in the header");
+  command.add_flag("--all", exported.all,
+                   "Export all frames, and with --csv all columns (default: the training drive's)");
+  command.add_flag("--heights", exported.heights,
+                   "Export height maps as 16-bit PNGs, with their scale in scale.json");
+  command.add_flag("--leveling", exported.leveling,
+                   "Export the leveling curve as CSV, with units in the header");
+  command.add_flag("--pictures", exported.pictures,
+                   "Export shaded height maps with the driven path: of the start, the end and what "
+                   "changed, and of frames between where heights were recorded");
   add_number(
-      *command, "--every", exported->every,
+      command, "--every", exported.every,
       "Frames between two images (default: 100 for --heights, a tenth of all for --pictures)",
       kCountRange);
-  add_number(*command, "--first", exported->first, "First frame, counted from 0 in the session",
+  add_number(command, "--first", exported.first, "First frame, counted from 0 in the session",
              {0, 1e9});
-  add_number(*command, "--count", exported->count, "Number of frames", kCountRange);
-  command->add_option("--out", exported->out, "Output folder (default: RUN/export)")
+  add_number(command, "--count", exported.count, "Number of frames", kCountRange);
+  command.add_option("--out", exported.out, "Output folder (default: RUN/export)")
       ->type_name("FOLDER");
-  command->callback(
-      [exported, &program] { program.action = [exported] { return run_export(*exported); }; });
-
   register_session_subcommands(*session, program);
 }
 

@@ -1,15 +1,13 @@
 // `screed session compare A B`: two recorded runs, as a table, JSON and one picture.
+#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
-#include <iostream>
-#include <memory>
 #include <string>
+#include <utility>
 
 #include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/json.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/run/comparison/comparison_picture.h"
 #include "host_sim/run/comparison/session_comparison.h"
 #include "host_sim/run/session/run_folder.h"
@@ -31,19 +29,17 @@ struct CompareArguments {
 };
 
 Json describe_end(const FinalState& end) {
-  Json json;
-  json["time_s"] = end.time_s;
-  json["x_m"] = end.x_m;
-  json["y_m"] = end.y_m;
-  json["heading_deg"] = kDegPerRad * end.heading_rad;
-  json["distance_m"] = end.distance_m;
-  json["state"] = end.state;
-  json["leveling_state"] = end.leveling_state;
-  json["faults"] = end.faults;
-  json["battery_v"] = end.battery_v;
-  json["energy_j"] = end.energy_j;
-  json["terrain_change"] = end.change.has_value() ? json_of(*end.change) : Json();
-  return json;
+  return {{"time_s", end.time_s},
+          {"x_m", end.x_m},
+          {"y_m", end.y_m},
+          {"heading_deg", kDegPerRad * end.heading_rad},
+          {"distance_m", end.distance_m},
+          {"state", end.state},
+          {"leveling_state", end.leveling_state},
+          {"faults", end.faults},
+          {"battery_v", end.battery_v},
+          {"energy_j", end.energy_j},
+          {"terrain_change", end.change.has_value() ? json_of(*end.change) : Json()}};
 }
 
 Json describe_point(const DeviationPoint& point) {
@@ -60,20 +56,17 @@ Json describe_terrain(const TerrainDifference& terrain) {
 }
 
 Json to_json(const SessionComparison& comparison, const CompareArguments& arguments) {
-  Json json;
-  json["identical"] = comparison.identical();
+  Json json = {{"identical", comparison.identical()}};
   for (std::size_t i = 0; i < 2; ++i) {
     const ComparedRun& run = comparison.runs.at(i);
-    Json one;
-    one["run"] = arguments.runs.at(i);
-    one["experiment"] = run.name;
-    one["program_version"] = run.program_version;
-    one["seed"] = run.seed;
-    one["frames"] = run.frames;
-    one["complete"] = run.complete;
-    one["content_hash"] = run.content_hash;
-    one["end"] = run.frames > 0 ? describe_end(run.end) : Json();
-    json[i == 0 ? "a" : "b"] = one;
+    json[i == 0 ? "a" : "b"] = {{"run", arguments.runs.at(i)},
+                                {"experiment", run.name},
+                                {"program_version", run.program_version},
+                                {"seed", run.seed},
+                                {"frames", run.frames},
+                                {"complete", run.complete},
+                                {"content_hash", run.content_hash},
+                                {"end", run.frames > 0 ? describe_end(run.end) : Json()}};
   }
   json["configuration"] = Json::array();
   for (const KeyDifference& it : comparison.configuration) {
@@ -83,11 +76,10 @@ Json to_json(const SessionComparison& comparison, const CompareArguments& argume
   }
   json["common_ticks"] = comparison.common_ticks;
   json["first_difference"] = nullptr;
-  if (comparison.first.has_value()) {
-    const FirstDifference& first = *comparison.first;
-    json["first_difference"] = {{"tick", first.tick},     {"time_s", first.time_s},
-                                {"column", first.column}, {"a", first.a},
-                                {"b", first.b},           {"all_columns", first.all_columns}};
+  if (const auto& first = comparison.first; first.has_value()) {
+    json["first_difference"] = {{"tick", first->tick},     {"time_s", first->time_s},
+                                {"column", first->column}, {"a", first->a},
+                                {"b", first->b},           {"all_columns", first->all_columns}};
   }
   json["deviation"] = nullptr;
   if (comparison.summary.has_value()) {
@@ -100,116 +92,104 @@ Json to_json(const SessionComparison& comparison, const CompareArguments& argume
   return json;
 }
 
-void print_row(const std::string& name, const std::string& a, const std::string& b) {
-  std::printf("  %-28s %20s %20s\n", name.c_str(), a.c_str(), b.c_str());
+void print_both(const std::string& name, const std::string& a, const std::string& b) {
+  print("  {:-28s} {:20s} {:20s}\n", name, a, b);
 }
 
-std::string number(double value, int decimals) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
-void print_first_difference(const SessionComparison& comparison) {
+/// The columns that differ in the tick of the first difference, beside the first of them.
+std::string other_columns(const Json& columns) {
   constexpr std::size_t kShown = 4;
-  const std::array<std::uint64_t, 2> frames = {comparison.runs[0].frames,
-                                               comparison.runs[1].frames};
-  if (comparison.common_ticks == 0) {
-    std::printf("ticks          none that both have\n");
-  } else if (!comparison.first.has_value()) {
-    std::printf("ticks          equal in all %llu that both have\n",
-                static_cast<unsigned long long>(comparison.common_ticks));
-  } else {
-    const FirstDifference& first = *comparison.first;
-    std::printf("ticks          first difference in tick %llu (%.2f s), %s: A %s, B %s\n",
-                static_cast<unsigned long long>(first.tick), first.time_s, first.column.c_str(),
-                first.a.c_str(), first.b.c_str());
-    if (first.all_columns.size() > 1) {
-      std::string others;
-      for (std::size_t i = 1; i < std::min(kShown + 1, first.all_columns.size()); ++i) {
-        others += (others.empty() ? "" : ", ") + first.all_columns[i];
-      }
-      if (first.all_columns.size() > kShown + 1) {
-        others += " and " + std::to_string(first.all_columns.size() - kShown - 1) + " more";
-      }
-      std::printf("               in the same tick: %s\n", others.c_str());
-    }
-  }
-  if (frames[0] != frames[1]) {
-    std::printf("               A has %llu ticks, B %llu\n",
-                static_cast<unsigned long long>(frames[0]),
-                static_cast<unsigned long long>(frames[1]));
-  }
+  std::string others;
+  for (std::size_t i = 1; i < std::min(kShown + 1, columns.size()); ++i)
+    others += (others.empty() ? "" : ", ") + columns[i].text();
+  if (columns.size() > kShown + 1)
+    others += " and " + std::to_string(columns.size() - kShown - 1) + " more";
+  return others;
 }
 
-void print_ends(const FinalState& a, const FinalState& b) {
-  print_row("end", "A", "B");
-  print_row("time [s]", number(a.time_s, 2), number(b.time_s, 2));
-  print_row("x, y [m]", number(a.x_m, 3) + ", " + number(a.y_m, 3),
-            number(b.x_m, 3) + ", " + number(b.y_m, 3));
-  print_row("heading [deg]", number(kDegPerRad * a.heading_rad, 1),
-            number(kDegPerRad * b.heading_rad, 1));
-  print_row("driven [m]", number(a.distance_m, 2), number(b.distance_m, 2));
-  print_row("state", a.state, b.state);
-  print_row("leveling state", a.leveling_state, b.leveling_state);
-  print_row("faults", a.faults, b.faults);
-  print_row("battery [V]", number(a.battery_v, 2), number(b.battery_v, 2));
-  print_row("energy [J]", number(a.energy_j, 1), number(b.energy_j, 1));
-  const auto litres = [](const FinalState& end, double TerrainChange::*volume_m3) {
-    return end.change.has_value() ? number(kLitresPerM3 * ((*end.change).*volume_m3), 3)
-                                  : std::string("not recorded");
+void print_first_difference(const Json& json) {
+  const Json& first = json["first_difference"];
+  if (json["common_ticks"] == 0) {
+    print("ticks          none that both have\n");
+  } else if (first.is_null()) {
+    print("ticks          equal in all {common_ticks} that both have\n", json);
+  } else {
+    print(
+        "ticks          first difference in tick {tick} ({time_s:.2f} s), {column}: A {a}, B {b}\n",
+        first);
+    const Json& columns = first["all_columns"];
+    if (columns.size() > 1) print("               in the same tick: {}\n", other_columns(columns));
+  }
+  if (json["a"]["frames"] != json["b"]["frames"])
+    print("               A has {a.frames} ticks, B {b.frames}\n", json);
+}
+
+void print_ends(const Json& a, const Json& b) {
+  const auto row = [&](const char* name, const char* text) {
+    print_both(name, filled(text, a), filled(text, b));
   };
-  print_row("cut [L]", litres(a, &TerrainChange::cut_m3), litres(b, &TerrainChange::cut_m3));
-  print_row("fill [L]", litres(a, &TerrainChange::fill_m3), litres(b, &TerrainChange::fill_m3));
+  print_both("end", "A", "B");
+  row("time [s]", "{time_s:.2f}");
+  row("x, y [m]", "{x_m:.3f}, {y_m:.3f}");
+  row("heading [deg]", "{heading_deg:.1f}");
+  row("driven [m]", "{distance_m:.2f}");
+  row("state", "{state}");
+  row("leveling state", "{leveling_state}");
+  row("faults", "{faults}");
+  row("battery [V]", "{battery_v:.2f}");
+  row("energy [J]", "{energy_j:.1f}");
+  const auto litres = [](const Json& end, const char* text) {
+    const Json& change = end["terrain_change"];
+    return change.is_null() ? "not recorded" : filled(text, change);
+  };
+  for (const auto& [name, text] :
+       {std::pair("cut [L]", "{cut_m3*1000:.3f}"), std::pair("fill [L]", "{fill_m3*1000:.3f}")})
+    print_both(name, litres(a, text), litres(b, text));
 }
 
-void print_text(const SessionComparison& comparison, const CompareArguments& arguments) {
-  std::printf("%s\n", comparison.identical() ? "identical" : "different");
-  for (std::size_t i = 0; i < 2; ++i) {
-    const ComparedRun& run = comparison.runs.at(i);
-    std::printf("%c              %s: %s, seed %llu, %s%s\n", i == 0 ? 'A' : 'B',
-                arguments.runs.at(i).c_str(), run.name.c_str(),
-                static_cast<unsigned long long>(run.seed), run.program_version.c_str(),
-                run.complete ? "" : ", did not end");
+void print_comparison(const Json& json) {
+  print("{}\n", json["identical"].get<bool>() ? "identical" : "different");
+  for (const char* run : {"a", "b"}) {
+    print("{}              ", run == std::string("a") ? "A" : "B");
+    print("{run}: {experiment}, seed {seed}, {program_version}", json[run]);
+    print(json[run]["complete"].get<bool>() ? "\n" : ", did not end\n");
   }
-  if (comparison.configuration.empty()) {
-    std::printf("configuration  the same\n");
+  const Json& configuration = json["configuration"];
+  if (configuration.empty()) {
+    print("configuration  the same\n");
   } else {
-    std::printf("configuration  %zu %s\n", comparison.configuration.size(),
-                comparison.configuration.size() == 1 ? "key differs" : "keys differ");
-    for (const KeyDifference& it : comparison.configuration) {
-      print_row(it.key, it.a.value_or("not set"), it.b.value_or("not set"));
-    }
+    print("configuration  {} {}\n", configuration.size(),
+          configuration.size() == 1 ? "key differs" : "keys differ");
+    for (const Json& it : configuration)
+      print_both(it["key"].text(), it["a"].is_null() ? "not set" : it["a"].text(),
+                 it["b"].is_null() ? "not set" : it["b"].text());
   }
-  print_first_difference(comparison);
-  if (comparison.summary.has_value()) {
-    const DeviationSummary& it = *comparison.summary;
-    std::printf(
-        "apart          %.4f m and %.2f degrees at %.2f s; most %.4f m at %.2f s, %.2f "
-        "degrees at %.2f s\n",
-        it.last.position_m, kDegPerRad * it.last.heading_rad, it.last.time_s,
-        it.largest_position.position_m, it.largest_position.time_s,
-        kDegPerRad * it.largest_heading.heading_rad, it.largest_heading.time_s);
+  print_first_difference(json);
+  if (const Json& apart = json["deviation"]; !apart.is_null()) {
+    print(
+        "apart          {last.position_m:.4f} m and {last.heading_deg:.2f} degrees at "
+        "{last.time_s:.2f} s; most {largest_position.position_m:.4f} m at "
+        "{largest_position.time_s:.2f} s, {largest_heading.heading_deg:.2f} degrees at "
+        "{largest_heading.time_s:.2f} s\n",
+        apart);
   }
-  const TerrainDifference& terrain = comparison.terrain;
-  if (!terrain.not_comparable.empty()) {
-    std::printf("terrain        not compared: %s\n", terrain.not_comparable.c_str());
-  } else if (terrain.rms_m == 0.0) {
-    std::printf("terrain        the same at the end\n");
+  const Json& terrain = json["terrain"];
+  if (terrain.contains("not_compared")) {
+    print("terrain        not compared: {not_compared}\n", terrain);
+  } else if (terrain["rms_m"] == 0.0) {
+    print("terrain        the same at the end\n");
   } else {
-    std::printf(
-        "terrain        B from A %+.2f to %+.2f mm, rms %.3f mm, %.3f L above and %.3f L "
-        "below\n",
-        -kMmPerM * terrain.change.deepest_cut_m, kMmPerM * terrain.change.deepest_fill_m,
-        kMmPerM * terrain.rms_m, kLitresPerM3 * terrain.change.fill_m3,
-        kLitresPerM3 * terrain.change.cut_m3);
+    print(
+        "terrain        B from A {deepest_cut_m*-1000:+.2f} to {deepest_fill_m*1000:+.2f} mm, rms "
+        "{rms_m*1000:.3f} mm, {fill_m3*1000:.3f} L above and {cut_m3*1000:.3f} L below\n",
+        terrain);
   }
-  if (comparison.runs[0].frames > 0 && comparison.runs[1].frames > 0) {
-    print_ends(comparison.runs[0].end, comparison.runs[1].end);
-  }
+  if (!json["a"]["end"].is_null() && !json["b"]["end"].is_null())
+    print_ends(json["a"]["end"], json["b"]["end"]);
+  if (!json["picture"].is_null()) print("picture        {picture}\n", json);
 }
 
-int run_compare(const CompareArguments& arguments) {
+int compare_runs(const CompareArguments& arguments) {
   if (!arguments.no_picture && fs::path(arguments.out).extension() != ".png") {
     throw InputError("--out " + arguments.out + ": the name ends in .png");
   }
@@ -219,37 +199,29 @@ int run_compare(const CompareArguments& arguments) {
   if (!arguments.no_picture) {
     write_comparison_picture(arguments.out, comparison, arguments.runs);
   }
-  if (arguments.json) {
-    Json json = to_json(comparison, arguments);
-    json["picture"] = arguments.no_picture ? Json() : Json(arguments.out);
-    // A path need not be UTF-8; JSON must.
-    std::cout << json.dump(2, Json::BadText::kReplace) << "\n";
-  } else {
-    print_text(comparison, arguments);
-    if (!arguments.no_picture) std::printf("picture        %s\n", arguments.out.c_str());
-  }
+  Json json = to_json(comparison, arguments);
+  json["picture"] = arguments.no_picture ? Json() : Json(arguments.out);
+  arguments.json ? print_json(json) : print_comparison(json);
   return arguments.fail_if_different && !comparison.identical() ? 1 : 0;
 }
 
 }  // namespace
 
 void register_session_compare_command(Command& session, Program& program) {
-  auto arguments = std::make_shared<CompareArguments>();
-  Command* command = session.add_subcommand(
-      "compare", "Compare two runs: configuration, ticks, paths, terrain and ends");
-  command->add_option("A", arguments->runs[0], "Run folder or session file")->required();
-  command->add_option("B", arguments->runs[1], "Run folder or session file")->required();
+  auto [command, arguments] = add_subcommand<CompareArguments>(
+      session, program, "compare",
+      "Compare two runs: configuration, ticks, paths, terrain and ends", compare_runs);
+  command.add_option("A", arguments.runs[0], "Run folder or session file")->required();
+  command.add_option("B", arguments.runs[1], "Run folder or session file")->required();
   Option* out =
-      command->add_option("--out", arguments->out, "Output picture, .png; replaced where it exists")
+      command.add_option("--out", arguments.out, "Output picture, .png; replaced where it exists")
           ->type_name("FILE")
           ->show_default();
-  command->add_flag("--no-picture", arguments->no_picture, "Print the comparison alone")
+  command.add_flag("--no-picture", arguments.no_picture, "Print the comparison alone")
       ->excludes(out);
-  command->add_flag("--json", arguments->json, "Print JSON");
-  command->add_flag("--fail-if-different", arguments->fail_if_different,
-                    "Exit with 1 unless the runs are identical (default: 0 either way)");
-  command->callback(
-      [arguments, &program] { program.action = [arguments] { return run_compare(*arguments); }; });
+  command.add_flag("--json", arguments.json, "Print JSON");
+  command.add_flag("--fail-if-different", arguments.fail_if_different,
+                   "Exit with 1 unless the runs are identical (default: 0 either way)");
 }
 
 }  // namespace screed

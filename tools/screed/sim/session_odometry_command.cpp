@@ -1,12 +1,9 @@
 // `screed session odometry RUN...`: how far dead reckoning was off, as a table or JSON.
-#include <cstdio>
-#include <iostream>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/core/json.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/run/comparison/odometry_errors.h"
 #include "host_sim/run/session/run_folder.h"
 #include "tools/screed/cli/command.h"
@@ -38,20 +35,18 @@ Json json_of(const OdometrySummary& summary, double length_m) {
   return json;
 }
 
-void print_text(const OdometrySummary& summary, double length_m) {
-  std::printf("%zu legs of %g m of the true path, error at their end [m]:\n", summary.legs,
-              length_m);
-  std::printf("%-30s %8s %16s %8s\n", "", "median", "95 % of it", "90 %");
-  for (std::size_t way = 0; way < kReckonings; ++way) {
-    const OdometrySummary::Errors& errors = summary.errors[way];
-    std::printf("%-30s %8.2f %7.2f to %5.2f %8.2f\n", name_of(static_cast<Reckoning>(way)),
-                errors.median_m, errors.median_95_m.low, errors.median_95_m.high,
-                errors.ninety_percent_m);
+void print_errors(const Json& json) {
+  print("{legs} legs of {leg_m:g} m of the true path, error at their end [m]:\n", json);
+  print("{:-30s} {:8s} {:16s} {:8s}\n", "", "median", "95 % of it", "90 %");
+  for (const auto& [way, errors] : json["errors"].items()) {
+    print("{:-30s}", way);
+    print(" {median_m:8.2f} {median_95_m.0:7.2f} to {median_95_m.1:5.2f} {ninety_percent_m:8.2f}\n",
+          errors);
   }
-  std::printf(
-      "squared error over the variance that the firmware states: %.2f; consistent from %.2f to "
-      "%.2f\n",
-      summary.consistency, summary.consistent.low, summary.consistent.high);
+  print(
+      "squared error over the variance that the firmware states: {consistency:.2f}; consistent "
+      "from {consistent_95.0:.2f} to {consistent_95.1:.2f}\n",
+      json);
 }
 
 int run_odometry(const OdometryArguments& arguments) {
@@ -65,27 +60,21 @@ int run_odometry(const OdometryArguments& arguments) {
   if (legs.empty()) {
     throw InputError("no run is as long as one leg; --length must be shorter than what they drove");
   }
-  const OdometrySummary summary = summarize(legs);
-  if (arguments.json) {
-    std::cout << json_of(summary, arguments.length_m).dump(2) << "\n";
-  } else {
-    print_text(summary, arguments.length_m);
-  }
+  const Json json = json_of(summarize(legs), arguments.length_m);
+  arguments.json ? print_json(json) : print_errors(json);
   return 0;
 }
 
 }  // namespace
 
 void register_session_odometry_command(Command& session, Program& program) {
-  auto arguments = std::make_shared<OdometryArguments>();
-  Command* command = session.add_subcommand(
-      "odometry", "Compare dead reckoning with the truth, over all legs of one or more runs");
-  command->add_option("RUN", arguments->runs, "Run folders or session files")->required();
-  add_number(*command, "--length", arguments->length_m, "Length of a leg along the true path [m]",
+  auto [command, arguments] = add_subcommand<OdometryArguments>(
+      session, program, "odometry",
+      "Compare dead reckoning with the truth, over all legs of one or more runs", run_odometry);
+  command.add_option("RUN", arguments.runs, "Run folders or session files")->required();
+  add_number(command, "--length", arguments.length_m, "Length of a leg along the true path [m]",
              {0.1, 1e6});
-  command->add_flag("--json", arguments->json, "Print JSON");
-  command->callback(
-      [arguments, &program] { program.action = [arguments] { return run_odometry(*arguments); }; });
+  command.add_flag("--json", arguments.json, "Print JSON");
 }
 
 }  // namespace screed

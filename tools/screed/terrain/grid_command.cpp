@@ -7,14 +7,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <thread>
 #include <vector>
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/json.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/grid/grid_figures.h"
 #include "host_sim/grid/grid_recording.h"
 #include "host_sim/grid/grid_run.h"
@@ -44,6 +43,7 @@ struct GridOptions {
   std::string follow_slope;
   std::string turn_back;
   int runs = 1;
+  const Option* runs_option = nullptr;
   int workers = 0;
   std::string figure;
   std::string out;
@@ -169,50 +169,31 @@ bool is_live(const GridOptions& options) {
   return !options.headless && !options.json && !options.quiet && isatty(STDOUT_FILENO) == 1;
 }
 
-std::string percent(double share) {
-  char text[20];
-  std::snprintf(text, sizeof text, "%.1f %%", 100.0 * share);
-  return text;
-}
-
 Json json_of(const GridConfig& config) {
   Json json;
   for (const auto& [name, value] : describe(config)) json[name] = value;
   return json;
 }
 
-void print_json(const Json& json) {
-  // A path need not be UTF-8; JSON must.
-  std::cout << json.dump(-1, Json::BadText::kReplace) << "\n";
-}
-
 void print_run(const GridRun& run, bool json) {
   const GridResult result = run.result();
   const GridWorld& world = run.world();
-  if (json) {
-    print_json({{"level", result.level},
-                {"cycles", result.cycles},
-                {"units", result.units},
-                {"least_units", result.min_units},
-                {"distance", result.distance()},
-                {"progress", run.progress().progress},
-                {"lowest", world.lowest()},
-                {"highest", world.highest()},
-                {"deviation", world.deviation()},
-                {"config", json_of(run.config())}});
-    return;
-  }
-  std::printf("%s, seed %llu: %s\n", name_of(run.config().algorithm),
-              static_cast<unsigned long long>(run.config().seed),
-              result.level ? "level" : "not level");
-  std::printf("  %-22s %12llu\n", "cycles", static_cast<unsigned long long>(result.cycles));
-  std::printf("  %-22s %12llu\n", "units moved", static_cast<unsigned long long>(result.units));
-  std::printf("  %-22s %12llu\n", "fewest possible",
-              static_cast<unsigned long long>(result.min_units));
-  std::printf("  %-22s %12.0f cells\n", "distance", result.distance());
-  std::printf("  %-22s %12s\n", "leveled", percent(run.progress().progress).c_str());
-  std::printf("  %-22s %9u to %u, deviation %.3f\n", "heights", world.lowest(), world.highest(),
-              world.deviation());
+  const Json figures = {{"level", result.level},          {"cycles", result.cycles},
+                        {"units", result.units},          {"least_units", result.min_units},
+                        {"distance", result.distance()},  {"progress", run.progress().progress},
+                        {"lowest", world.lowest()},       {"highest", world.highest()},
+                        {"deviation", world.deviation()}, {"config", json_of(run.config())}};
+  if (json) return print_json(figures, -1);
+  print("{}, seed {}: {}\n", name_of(run.config().algorithm), run.config().seed,
+        result.level ? "level" : "not level");
+  print(
+      "  cycles                 {cycles:12s}\n"
+      "  units moved            {units:12s}\n"
+      "  fewest possible        {least_units:12s}\n"
+      "  distance               {distance:12.0f} cells\n"
+      "  leveled                {progress*100:10.1f} %\n"
+      "  heights                {lowest:9s} to {highest}, deviation {deviation:.3f}\n",
+      figures);
 }
 
 /// Points of the progress curve, ever farther apart.
@@ -224,11 +205,7 @@ class CurveFile {
   void add(const GridRun& run, bool last) {
     if (!last && run.cycles() < next_) return;
     const GridProgress now = run.progress();
-    char line[120];
-    std::snprintf(line, sizeof line, "%llu,%llu,%.1f,%.6f\n",
-                  static_cast<unsigned long long>(now.cycle),
-                  static_cast<unsigned long long>(now.units), now.distance, now.progress);
-    file_.write(line);
+    file_.write(filled("{},{},{:.1f},{:.6f}\n", now.cycle, now.units, now.distance, now.progress));
     next_ = std::max(now.cycle + 1, now.cycle + now.cycle / 50);
   }
   void finish() { file_.commit(); }
@@ -348,18 +325,19 @@ int run_replay(const GridOptions& options) {
   }
   if (!replay.finished()) return interrupted_exit_code();
   const bool matches = replay.matches();
+  const Json figures = {{"cycles", replay.cycles()},
+                        {"units", replay.frame().units},
+                        {"algorithm", replay.value("algorithm")},
+                        {"seed", replay.value("seed")},
+                        {"matches", matches}};
   if (options.json) {
-    print_json({{"cycles", replay.cycles()},
-                {"units", replay.frame().units},
-                {"algorithm", replay.value("algorithm")},
-                {"seed", replay.value("seed")},
-                {"matches", matches}});
+    print_json(figures, -1);
   } else {
-    std::printf("%s, seed %s: %llu cycles, %llu units moved; the terrain at the end is %s\n",
-                replay.value("algorithm").c_str(), replay.value("seed").c_str(),
-                static_cast<unsigned long long>(replay.cycles()),
-                static_cast<unsigned long long>(replay.frame().units),
-                matches ? "the recorded one" : "NOT the recorded one");
+    print(
+        "{algorithm}, seed {seed}: {cycles} cycles, {units} units moved; the terrain at the end "
+        "is ",
+        figures);
+    print(matches ? "the recorded one\n" : "NOT the recorded one\n");
   }
   if (!options.render.empty()) {
     frames.push_back(replay.frame());
@@ -404,27 +382,7 @@ int stopped_early(bool is_kept) {
 }
 
 void print_points(const std::vector<SweepPoint>& points,
-                  const std::vector<std::vector<GridResult>>& results) {
-  std::printf("%-28s %18s %18s %8s %8s %8s\n", "", "cycles", "units moved", "fewest", "x least",
-              "failed");
-  double least_cycles = cycles_of(results.front()).mean;
-  for (const auto& runs : results) least_cycles = std::min(least_cycles, cycles_of(runs).mean);
-  for (size_t i = 0; i < points.size(); ++i) {
-    const Summary cycles = cycles_of(results[i]);
-    const Summary units = units_of(results[i]);
-    double fewest = 0.0;
-    for (const GridResult& run : results[i]) {
-      fewest += static_cast<double>(run.min_units) / static_cast<double>(results[i].size());
-    }
-    std::printf("%-28s %9.0f +- %5.0f %9.0f +- %5.0f %8.0f %8.2f %4zu/%zu\n",
-                points[i].label.c_str(), cycles.mean, cycles.standard_error, units.mean,
-                units.standard_error, fewest, cycles.mean / least_cycles, failures_of(results[i]),
-                results[i].size());
-  }
-}
-
-void print_points_json(const std::vector<SweepPoint>& points,
-                       const std::vector<std::vector<GridResult>>& results) {
+                  const std::vector<std::vector<GridResult>>& results, bool as_json) {
   Json json = Json::array();
   for (size_t i = 0; i < points.size(); ++i) {
     const Summary cycles = cycles_of(results[i]);
@@ -438,7 +396,23 @@ void print_points_json(const std::vector<SweepPoint>& points,
                     {"units", units.mean},
                     {"units_standard_error", units.standard_error}});
   }
-  print_json(json);
+  if (as_json) return print_json(json, -1);
+  print("{:-28s} {:18s} {:18s} {:8s} {:8s} {:8s}\n", "", "cycles", "units moved", "fewest",
+        "x least", "failed");
+  double least_cycles = cycles_of(results.front()).mean;
+  for (const auto& runs : results) least_cycles = std::min(least_cycles, cycles_of(runs).mean);
+  for (size_t i = 0; i < points.size(); ++i) {
+    double fewest = 0.0;
+    for (const GridResult& run : results[i]) {
+      fewest += static_cast<double>(run.min_units) / static_cast<double>(results[i].size());
+    }
+    print(
+        "{point:-28s} {cycles:9.0f} +- {cycles_standard_error:5.0f} {units:9.0f} +- "
+        "{units_standard_error:5.0f} ",
+        json[i]);
+    print("{:8.0f} {:8.2f} {:4s}/{}\n", fewest, json[i]["cycles"].get<double>() / least_cycles,
+          json[i]["failures"], results[i].size());
+  }
 }
 
 int run_figure(const GridOptions& options, const std::string& version) {
@@ -451,13 +425,9 @@ int run_figure(const GridOptions& options, const std::string& version) {
   const SweepResult result = sweep(options, figure.points, settings, version);
   if (!result.complete) return stopped_early(true);
   const FigureFiles files = write_figure(folder, figure, result.results);
-  if (options.json) {
-    print_points_json(figure.points, result.results);
-  } else {
-    print_points(figure.points, result.results);
-    std::printf("\n  runs    %s\n  table   %s\n  figure  %s\n", settings.table.c_str(),
-                files.csv.c_str(), files.svg.c_str());
-  }
+  print_points(figure.points, result.results, options.json);
+  if (!options.json)
+    print("\n  runs    {}\n  table   {}\n  figure  {}\n", settings.table, files.csv, files.svg);
   return 0;
 }
 
@@ -471,15 +441,12 @@ int run_many(const GridOptions& options, const std::string& version) {
   }
   const SweepResult result = sweep(options, points, settings, version);
   if (!result.complete) return stopped_early(!options.out.empty());
-  if (options.json) {
-    print_points_json(points, result.results);
-  } else {
-    print_points(points, result.results);
-  }
+  print_points(points, result.results, options.json);
   return 0;
 }
 
-int run_command(GridOptions options, bool runs_given, const std::string& version) {
+int run_command(GridOptions options, const std::string& version) {
+  const bool runs_given = options.runs_option->given();
   if (!options.render.empty()) check_picture_name(options.render);
   const bool one_run = options.figure.empty() && !runs_given;
   if (!one_run && !(options.record + options.replay + options.render + options.curve).empty()) {
@@ -500,109 +467,104 @@ int run_command(GridOptions options, bool runs_given, const std::string& version
 }  // namespace
 
 void register_grid_command(Command& root, Program& program) {
-  const auto options = std::make_shared<GridOptions>();
-  GridConfig& config = options->config;
-  Command* command = root.add_subcommand(
-      "grid", "Run leveling agents on a grid of stacks (thesis 4.2), once or many times");
+  auto [command, options] = add_subcommand<GridOptions>(
+      root, program, "grid",
+      "Run leveling agents on a grid of stacks (thesis 4.2), once or many times", run_command);
+  GridConfig& config = options.config;
   command
-      ->add_option("--algorithm", options->algorithm,
-                   "Algorithm: probabilistic, threshold, memetic-1, memetic-2, patient or forager")
+      .add_option("--algorithm", options.algorithm,
+                  "Algorithm: probabilistic, threshold, memetic-1, memetic-2, patient or forager")
       ->show_default();
-  add_number(*command, "--seed", config.seed, "Seed of the first run; each further run adds 1",
+  add_number(command, "--seed", config.seed, "Seed of the first run; each further run adds 1",
              kSeedRange);
-  add_number(*command, "--agents", config.agents, "Number of agents",
+  add_number(command, "--agents", config.agents, "Number of agents",
              {1, kLargestGridSide * kLargestGridSide});
-  command->add_option("--size", options->size,
-                      "Grid size [cells]: one number for a square, or WIDTHxHEIGHT");
-  command->add_option("--border", options->border, "Border of the grid: walls or torus")
+  command.add_option("--size", options.size,
+                     "Grid size [cells]: one number for a square, or WIDTHxHEIGHT");
+  command.add_option("--border", options.border, "Border of the grid: walls or torus")
       ->show_default();
-  command->add_option("--terrain", config.image, "Grey image used as terrain (default: noise)")
+  command.add_option("--terrain", config.image, "Grey image used as terrain (default: noise)")
       ->type_name("FILE");
-  add_number(*command, "--white", config.white, "Height of a white pixel [units]",
-             {0.001, 10000.0});
-  add_number(*command, "--mean", options->mean, "Mean height [units] (noise: 6.5)", {0.0, 10000.0});
-  add_number(*command, "--amplitude", config.noise.amplitude, "Amplitude of the noise [units]",
+  add_number(command, "--white", config.white, "Height of a white pixel [units]", {0.001, 10000.0});
+  add_number(command, "--mean", options.mean, "Mean height [units] (noise: 6.5)", {0.0, 10000.0});
+  add_number(command, "--amplitude", config.noise.amplitude, "Amplitude of the noise [units]",
              {0.0, 10000.0});
-  add_number(*command, "--lattice", config.noise.lattice, "Lattice spacing of the noise [cells]",
+  add_number(command, "--lattice", config.noise.lattice, "Lattice spacing of the noise [cells]",
              {0.5, 1e6});
-  command->add_option("--stop", options->stop, "Stop criterion: level, gradient or deviation")
+  command.add_option("--stop", options.stop, "Stop criterion: level, gradient or deviation")
       ->show_default();
-  add_number(*command, "--epsilon", options->epsilon,
+  add_number(command, "--epsilon", options.epsilon,
              "Threshold of the stop criterion [units] (level 1, gradient 1.5, deviation 0.5)",
              {0.0, kMaxStackHeight});
-  add_number(*command, "--max-cycles", config.max_cycles,
+  add_number(command, "--max-cycles", config.max_cycles,
              "Maximum number of cycles; a longer run counts as failed", kCountRange);
 
-  add_number(*command, "-p,--probability", options->probability,
+  add_number(command, "-p,--probability", options.probability,
              "Probability of picking up and of depositing", kShareRange);
-  add_number(*command, "--p-pick-up", config.p_pick_up, "Probability of picking up", kShareRange);
-  add_number(*command, "--p-deposit", config.p_deposit, "Probability of depositing", kShareRange);
-  add_number(*command, "--p-sense", config.p_sense,
+  add_number(command, "--p-pick-up", config.p_pick_up, "Probability of picking up", kShareRange);
+  add_number(command, "--p-deposit", config.p_deposit, "Probability of depositing", kShareRange);
+  add_number(command, "--p-sense", config.p_sense,
              "Probability of sampling the height on arrival in a cell", kShareRange);
-  add_number(*command, "--p-turn", config.p_turn, "Probability of a step in a random direction",
+  add_number(command, "--p-turn", config.p_turn, "Probability of a step in a random direction",
              kShareRange);
-  add_number(*command, "-k", config.k, "Parameter k of the response curves (threshold)",
+  add_number(command, "-k", config.k, "Parameter k of the response curves (threshold)",
              {1.0 / 256.0, 255.0});
-  add_number(*command, "--memory", config.memory, "Length of the height memory [samples]",
+  add_number(command, "--memory", config.memory, "Length of the height memory [samples]",
              {1, HeightMemory::kMaxLength});
-  add_number(*command, "--fitness-threshold", config.fitness_threshold,
+  add_number(command, "--fitness-threshold", config.fitness_threshold,
              "Fitness below which chromosomes are replaced (memetic-2)", kShareRange);
   command
-      ->add_option("--fitness-base", options->fitness_base,
-                   "Operations counted by the fitness: executed or attempted (memetic)")
+      .add_option("--fitness-base", options.fitness_base,
+                  "Operations counted by the fitness: executed or attempted (memetic)")
       ->show_default();
-  add_number(*command, "--chromosomes", config.chromosomes, "Chromosomes per agent (memetic-2)",
+  add_number(command, "--chromosomes", config.chromosomes, "Chromosomes per agent (memetic-2)",
              {1, MemeticAgent::kMaxChromosomes});
-  add_number(*command, "--repetitions", config.repetitions,
+  add_number(command, "--repetitions", config.repetitions,
              "Repetitions of a chromosome (memetic-1)", {1, 100});
-  add_number(*command, "--averaging", config.averaging,
+  add_number(command, "--averaging", config.averaging,
              "Window of the running average [samples] (patient, forager)", {1, 32767});
-  add_number(*command, "--dead-band", config.dead_band,
+  add_number(command, "--dead-band", config.dead_band,
              "Dead band around the average in which nothing is moved [units] (patient, forager)",
              {0.0, 255.0});
-  add_number(*command, "--patience", config.patience,
+  add_number(command, "--patience", config.patience,
              "Idle cycles before the dead band shrinks; 0: never (patient, forager)", {0, 65535});
-  add_number(*command, "--hold-out", config.hold_out,
+  add_number(command, "--hold-out", config.hold_out,
              "Cycles over which the hold-out decays; 0: none (patient 0, forager 200)", {0, 65535});
-  command->add_option(
-      "--follow-slope", options->follow_slope,
+  command.add_option(
+      "--follow-slope", options.follow_slope,
       "Walk uphill when empty and downhill when loaded: yes or no (patient no, forager yes)");
-  command->add_option("--turn-back", options->turn_back,
-                      "Turn back after an operation: yes or no (patient no, forager yes)");
+  command.add_option("--turn-back", options.turn_back,
+                     "Turn back after an operation: yes or no (patient no, forager yes)");
 
-  Option* runs = add_number(*command, "--runs", options->runs,
-                            "Number of runs, on all cores; with --figure: per point", {1, 1e7});
-  add_number(*command, "--workers,--threads", options->workers,
+  options.runs_option =
+      add_number(command, "--runs", options.runs,
+                 "Number of runs, on all cores; with --figure: per point", {1, 1e7});
+  add_number(command, "--workers,--threads", options.workers,
              "Worker processes of many runs; 0: one per core; results do not depend on it",
              {0, 1024});
-  command->add_option("--figure", options->figure,
-                      "Reproduce a figure: 4.2, 4.3, 4.4, 4.5, better or better-units");
+  command.add_option("--figure", options.figure,
+                     "Reproduce a figure: 4.2, 4.3, 4.4, 4.5, better or better-units");
   command
-      ->add_option("--out", options->out,
-                   "Output folder for runs, tables and charts of --figure (default: out/grid) "
-                   "or --runs; resumes an interrupted sweep")
+      .add_option("--out", options.out,
+                  "Output folder for runs, tables and charts of --figure (default: out/grid) "
+                  "or --runs; resumes an interrupted sweep")
       ->type_name("FOLDER");
-  command->add_option("--record", options->record, "Record the run to this HDF5 file")
+  command.add_option("--record", options.record, "Record the run to this HDF5 file")
       ->type_name("FILE");
-  command->add_option("--replay", options->replay, "Play a recording instead of a run")
+  command.add_option("--replay", options.replay, "Play a recording instead of a run")
       ->type_name("FILE");
   command
-      ->add_option("--render", options->render,
-                   "Render a ray-traced picture (PNG) of the stacks before and after")
+      .add_option("--render", options.render,
+                  "Render a ray-traced picture (PNG) of the stacks before and after")
       ->type_name("FILE");
-  add_number(*command, "--render-width", options->render_width,
-             "Width of the rendered picture [px]", {100, 8000});
-  command->add_option("--curve", options->curve, "Write the progress curve to this CSV file")
+  add_number(command, "--render-width", options.render_width, "Width of the rendered picture [px]",
+             {100, 8000});
+  command.add_option("--curve", options.curve, "Write the progress curve to this CSV file")
       ->type_name("FILE");
-  add_number(*command, "--speed", options->speed, "Speed of the live view [cycles/s]", {0.01, 1e9});
-  command->add_flag("--headless", options->headless, "Run at full speed without live view");
-  command->add_flag("--quiet", options->quiet, "Show neither live view nor progress");
-  command->add_flag("--json", options->json, "Print results as JSON");
-  command->callback([options, runs, &program] {
-    program.action = [options, runs, version = program.version] {
-      return run_command(*options, runs->given(), version);
-    };
-  });
+  add_number(command, "--speed", options.speed, "Speed of the live view [cycles/s]", {0.01, 1e9});
+  command.add_flag("--headless", options.headless, "Run at full speed without live view");
+  command.add_flag("--quiet", options.quiet, "Show neither live view nor progress");
+  command.add_flag("--json", options.json, "Print results as JSON");
 }
 
 }  // namespace screed

@@ -1,7 +1,6 @@
 // `screed terrain generate`: height maps of made-up terrain.
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <string>
 
 #include "host_sim/core/errors.h"
@@ -12,7 +11,14 @@
 namespace screed {
 namespace {
 
-int generate(const std::string& file, const NoiseTerrainOptions& options) {
+struct GenerateArguments {
+  std::string file;
+  NoiseTerrainOptions noise;
+};
+
+int generate(const GenerateArguments& arguments) {
+  const std::string& file = arguments.file;
+  const NoiseTerrainOptions& options = arguments.noise;
   const std::filesystem::path path(file);
   const std::string kind = path.extension().string();
   if (kind != ".png" && kind != ".bmp") {
@@ -33,20 +39,17 @@ int generate(const std::string& file, const NoiseTerrainOptions& options) {
 
 void register_terrain_command(Command& root, Program& program) {
   Command* terrain = root.add_subcommand("terrain", "Generate height maps");
-  Command* command = terrain->add_subcommand(
-      "generate", "Generate a tileable height map of seeded noise, for [map] edges = wrap");
-  auto file = std::make_shared<std::string>();
-  auto options = std::make_shared<NoiseTerrainOptions>();
-  command->add_option("FILE", *file, "Output image: 16-bit PNG or 8-bit BMP")->required();
-  add_number(*command, "--seed", options->seed, "Seed of the noise", kSeedRange);
-  add_number(*command, "--size", options->size, "Side length [samples]", {16, 4096});
-  add_number(*command, "--waves", options->waves, "Number of hills along a side", {1, 64});
-  add_number(*command, "--octaves", options->octaves, "Number of octaves", {1, 10});
-  add_number(*command, "--persistence", options->persistence,
-             "Amplitude ratio of successive octaves", kShareRange);
-  command->callback([file, options, &program] {
-    program.action = [file, options] { return generate(*file, *options); };
-  });
+  auto [command, arguments] = add_subcommand<GenerateArguments>(
+      *terrain, program, "generate",
+      "Generate a tileable height map of seeded noise, for [map] edges = wrap", generate);
+  NoiseTerrainOptions& options = arguments.noise;
+  command.add_option("FILE", arguments.file, "Output image: 16-bit PNG or 8-bit BMP")->required();
+  add_number(command, "--seed", options.seed, "Seed of the noise", kSeedRange);
+  add_number(command, "--size", options.size, "Side length [samples]", {16, 4096});
+  add_number(command, "--waves", options.waves, "Number of hills along a side", {1, 64});
+  add_number(command, "--octaves", options.octaves, "Number of octaves", {1, 10});
+  add_number(command, "--persistence", options.persistence, "Amplitude ratio of successive octaves",
+             kShareRange);
 }
 
 }  // namespace screed
