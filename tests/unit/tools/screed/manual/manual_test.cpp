@@ -1,16 +1,85 @@
-// The man pages, read by man itself.
-#include "tools/screed/manual/roff_page.h"
-
+// What the program says of its command line: what may stand next, as shells ask it, and man pages.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <functional>
+#include <set>
 
 #include "tests/temp_folder.h"
 #include "tools/screed/cli/command_line.h"
+#include "tools/screed/manual/manual.h"
 
 namespace screed {
 namespace {
+
+using Words = std::set<std::string>;
+
+class Completion : public ::testing::Test {
+ protected:
+  /// What is offered behind these words; the last of them, which a shell compares, does not narrow
+  /// it.
+  Words offered(const std::vector<std::string>& typed) const {
+    Words words;
+    for (const Offer& offer : offers_after(root_, typed)) words.insert(offer.word);
+    return words;
+  }
+
+  CommandLine line_{"1.2.3", "screed 1.2.3"};
+  const CommandNode root_ = command_tree(line_.app);
+};
+
+Words names_of(const CommandNode& node) {
+  Words names;
+  for (const CommandNode& below : node.subcommands) names.insert(below.name);
+  return names;
+}
+
+/// Every path of the tree is offered step by step, every option where it is taken, with its help.
+TEST_F(Completion, OffersAllThatTheCommandLineHas) {
+  std::size_t count = 0;
+  const std::function<void(const CommandNode&, std::vector<std::string>)> check =
+      [&](const CommandNode& node, std::vector<std::string> path) {
+        path.emplace_back("-");
+        std::vector<Offer> expected;
+        for (const std::vector<OptionWords>* options : {&node.options, &node.inherited}) {
+          for (const OptionWords& option : *options)
+            for (const std::string& name : option.names) expected.push_back({name, option.help});
+        }
+        EXPECT_EQ(offers_after(root_, path), expected) << node.path;
+        count += expected.size();
+        path.back() = "";
+        if (node.subcommands.empty()) return;
+        EXPECT_EQ(offered(path), names_of(node)) << node.path;
+        for (const CommandNode& below : node.subcommands) {
+          path.back() = below.name;
+          check(below, path);
+        }
+      };
+  check(root_, {});
+  EXPECT_GT(count, 400U);
+}
+
+TEST_F(Completion, KnowsArgumentsAndValues) {
+  const Words files = {"/files"};
+  const Words ways = {"mcu", "native", "surrogate"};
+  EXPECT_EQ(offered({"help", ""}), names_of(root_));
+  EXPECT_EQ(offered({"completion", ""}), (Words{"bash", "fish", "zsh"}));
+  EXPECT_TRUE(offered({"param", "set", "climb_s"}).contains("climb_speed"));
+  EXPECT_TRUE(offered({"param", "get", "spin_rate", ""}).contains("climb_speed"));
+  EXPECT_EQ(offered({"sim", "--hal", "m"}), ways);
+  EXPECT_EQ(offered({"sim", "--hal", "=", "m"}), ways);
+  EXPECT_EQ(offered({"sim", "--hal", "="}), ways);
+  EXPECT_EQ(offered({"sim", "--hal=m"}), ways);
+  EXPECT_EQ(offered({"sim", "--hal=mcu", "run"}), files);
+  EXPECT_EQ(offered({"sim", "one.ini", "run"}), files);
+  EXPECT_EQ(offered({"manual", "--out", "run"}), Words{"/folders"});
+  EXPECT_EQ(offered({"sim", "--seed", ""}), Words{});
+  // A value is no subcommand, and the options of a group hold for those below it.
+  EXPECT_TRUE(offered({"param", "--port", "get", "di"}).contains("diff"));
+  EXPECT_TRUE(offered({"param", "get", "--rem"}).contains("--remember"));
+}
+
+// ---- man pages, read by man itself ----
 
 class RoffPage : public ::testing::Test {
  protected:
