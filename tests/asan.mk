@@ -42,8 +42,7 @@ endif
 # The library without what none of these tests links: training, the surrogate, fits, campaigns, most subcommands,
 # windows.
 ASAN_COMMANDS := $(addprefix tools/screed/,link/attitude_command.cpp link/decode_command.cpp link/key_command.cpp \
-  link/plot_command.cpp link/plot_signals.cpp sim/replay_command.cpp cli/interrupt.cpp cli/number_option.cpp \
-  cli/number_text.cpp cli/progress_bar.cpp cli/task_bar.cpp)
+  link/plot_command.cpp sim/replay_command.cpp cli/interrupt.cpp cli/number_option.cpp cli/progress_bar.cpp)
 ASAN_LEFT_OUT := $(addprefix nn/,training/% terrain/% surrogate/% slip/% data/%) \
   $(addprefix host_sim/,search/% benchmark/% campaign/% \
   soil_validation/soil_fit.cpp soil_validation/wheel_%.cpp soil_validation/plate_press.cpp \

@@ -1,22 +1,24 @@
 #!/bin/bash
-# commands.sh FILE...: C++ that declares and calls the registration of every subcommand, a file NAME_command.cpp each
-# (tools/screed/cli/command.h), by name. GROUP_NAME_command.cpp beside GROUP_command.cpp is a subcommand of `screed
-# GROUP`.
+# commands.sh FILE...: C++ that declares and calls the registration of every subcommand, register_NAME_command() of a
+# file *_command.cpp (tools/screed/cli/command.h), by name. GROUP_NAME in the folder of GROUP is a subcommand of
+# `screed GROUP`.
 set -euo pipefail
 export LC_ALL=C
 
 declare -A file_of subcommands
 for file in "$@"; do
-  name=$(basename "$file" _command.cpp)
-  grep -q "^void register_${name}_command(Command&" "$file" || {
-    echo "$file: defines no void register_${name}_command(Command& ..., Program& ...)" >&2
+  names=$(sed -nE 's/^void register_(\w+)_command\(Command&.*/\1/p' "$file")
+  [ -n "$names" ] || {
+    echo "$file: defines no void register_NAME_command(Command& ..., Program& ...)" >&2
     exit 1
   }
-  [ -z "${file_of[$name]:-}" ] || {
-    echo "$file: there is a subcommand of this name in ${file_of[$name]}" >&2
-    exit 1
-  }
-  file_of[$name]=$file
+  for name in $names; do
+    [ -z "${file_of[$name]:-}" ] || {
+      echo "$file: there is a subcommand $name in ${file_of[$name]}" >&2
+      exit 1
+    }
+    file_of[$name]=$file
+  done
 done
 
 names=$(printf '%s\n' "${!file_of[@]}" | sort)

@@ -1,7 +1,7 @@
 // The command line of a program as data: a command, its options and, below it, its subcommands.
 //
 // A program registers what it takes. Help, completion and manual are made from that
-// (command_tree.h), and parser.h reads what a user typed. Nothing here knows by what library.
+// (help.h), and program.h reads what a user typed. Nothing here knows by what library.
 #pragma once
 
 #include <cstdint>

@@ -31,7 +31,7 @@ while read -r library source; do
   sed "s|\$|: includes <$library/...>, which is for $source alone|" <<< "$found"
   status=1
 done <<'END'
-CLI tools/command_line/parser.cpp
+CLI tools/command_line/program.cpp
 nlohmann host_sim/core/json_text.cpp
 END
 

@@ -79,4 +79,25 @@ std::vector<SlurmJob> slurm_jobs(const CampaignFolder& folder);
 /// The runs of a shard, "FILE:LINE", lines counted from 0. Throws InputError.
 std::vector<size_t> read_shard(const std::string& text, const CampaignPlan& plan);
 
+/// Slurm's programs: sbatch, squeue, scontrol.
+namespace slurm {
+
+/// Most tasks of a job array: what the cluster allows. Throws RunError when Slurm does not answer.
+int max_array_size();
+
+/// Submits a script. Returns the job's number. Throws RunError with Slurm's own words.
+std::string submit(const std::string& script);
+
+/// Tasks of a job that wait or run; 0 of a job that Slurm does not know any more. Throws RunError
+/// when Slurm does not answer.
+int active_tasks(const std::string& job);
+
+/// Wall time as Slurm takes it, "1-02:30:00", whole minutes from at least this many seconds.
+std::string time_text(double seconds);
+
+/// The text of one word for a shell.
+std::string quoted(const std::string& word);
+
+}  // namespace slurm
+
 }  // namespace screed

@@ -1,13 +1,12 @@
 // What a subcommand is given when it registers itself.
 //
-// A subcommand is one file below tools/screed, NAME_command.cpp. It defines
+// A subcommand is defined in a file *_command.cpp below tools/screed, alone or with its like, by
 //
 //   void register_NAME_command(Command& parent, Program& program);
 //
-// which adds the subcommand to `parent` and, in its callback, sets `program.action` to what is to
-// be run after parsing. tools/build/commands.sh lists the files in the generated commands.h, by
-// name: GROUP_NAME_command.cpp beside GROUP_command.cpp belongs to `screed GROUP`, whose file calls
-// register_GROUP_subcommands(); the others belong to `screed` itself.
+// which adds the subcommand to `parent` (add_subcommand()). tools/build/commands.sh lists them in
+// the generated commands.h, by name: GROUP_NAME in the folder of GROUP belongs to `screed GROUP`,
+// which calls register_GROUP_subcommands(); the others belong to `screed` itself.
 #pragma once
 
 #include <functional>
@@ -38,12 +37,16 @@ Subcommand<Arguments> add_subcommand(Command& parent, Program& program, const st
                                      const std::string& help, Run run) {
   Command* const command = parent.add_subcommand(name, help);
   const auto arguments = std::make_shared<Arguments>();
-  command->callback([arguments, run, &program] {
-    program.action = [arguments, run, &program] {
-      if constexpr (std::is_invocable_v<Run, Arguments&, std::string&>) {
-        return run(*arguments, program.version);
-      } else {
-        return run(*arguments);
+  command->callback([command, arguments, run, &program] {
+    program.action = [command, arguments, run, &program] {
+      try {
+        if constexpr (std::is_invocable_v<Run, Arguments&, std::string&>) {
+          return run(*arguments, program.version);
+        } else {
+          return run(*arguments);
+        }
+      } catch (const UsageError& error) {
+        throw UsageError(error.what(), command->path());
       }
     };
   });

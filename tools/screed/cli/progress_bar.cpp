@@ -1,4 +1,4 @@
-// A progress bar.
+// Progress bars.
 #include "tools/screed/cli/progress_bar.h"
 
 #include <unistd.h>
@@ -7,8 +7,9 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <utility>
 
-#include "tools/screed/cli/number_text.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
@@ -90,6 +91,29 @@ void ProgressBar::finish() {
 void ProgressBar::clear() {
   if (terminal_ && visible_) out_ << "\r\033[K" << std::flush;
   visible_ = false;
+}
+
+TaskBar::TaskBar(bool quiet, std::string label) : quiet_(quiet), label_(std::move(label)) {}
+
+TaskProgress TaskBar::progress() {
+  return [this](std::string_view task, double share) {
+    stop_if_interrupted(task);
+    if (!quiet_) show(task, share);
+  };
+}
+
+void TaskBar::show(std::string_view task, double share) {
+  if (!bar_.has_value() || task_ != task) {
+    clear();
+    task_ = task;
+    bar_.emplace(std::cerr);
+  }
+  bar_->show_share(share, label_ + task_);
+}
+
+void TaskBar::clear() {
+  if (bar_.has_value()) bar_->clear();
+  bar_.reset();
 }
 
 }  // namespace screed

@@ -7,6 +7,10 @@
 
 namespace screed {
 
+/// The key that stops a robot at once, the same in every program that has keys: the largest one.
+inline constexpr int kEmergencyStopKey = ' ';
+inline constexpr const char* kEmergencyStopKeyName = "SPACE";
+
 /// Keys that are no characters.
 enum TerminalKey : int {
   kTerminalUp = 0x110000,

@@ -20,11 +20,10 @@
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "tools/screed/cli/command.h"
-#include "tools/screed/cli/emergency_stop_key.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/terminal_screen.h"
-#include "tools/screed/link/link_options.h"
+#include "tools/screed/link/robot_link.h"
 #include "tools/screed/viewer/gamepad_input.h"
 
 namespace screed {

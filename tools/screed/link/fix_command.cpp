@@ -32,7 +32,7 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
-#include "tools/screed/link/link_options.h"
+#include "tools/screed/link/robot_link.h"
 
 namespace screed {
 namespace {

@@ -16,10 +16,9 @@
 #include "host_sim/core/json.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "tools/screed/cli/command.h"
-#include "tools/screed/cli/parameter_names.h"
 #include "tools/screed/cli/progress_bar.h"
-#include "tools/screed/link/parameter_file.h"
-#include "tools/screed/link/robot_session.h"
+#include "tools/screed/link/named_parameters.h"
+#include "tools/screed/link/robot_link.h"
 
 namespace screed {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/command_line/command_tree.h"
+#include "tools/command_line/help.h"
 
 namespace screed {
 

@@ -7,7 +7,7 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "tools/command_line/suggestion.h"
+#include "tools/command_line/program.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/manual/manual.h"
 
@@ -121,9 +121,7 @@ const CommandNode& find_subcommand(const CommandNode& root, const std::string& n
     if (below.name == name) return below;
     names.push_back(below.name);
   }
-  const std::string nearest = nearest_word(name, names);
-  throw InputError("'" + name + "' is no subcommand" +
-                   (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+  throw InputError("'" + name + "' is no subcommand" + did_you_mean(name, names));
 }
 
 void write_all(const CommandNode& root, const std::string& version,

@@ -17,7 +17,6 @@
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
-#include "tools/screed/cli/task_bar.h"
 #include "tools/screed/nn/nn_tables.h"
 
 namespace screed {

@@ -1,7 +1,7 @@
 #include "tools/screed/nn/slip_options.h"
 
 #include "tools/screed/cli/number_option.h"
-#include "tools/screed/cli/task_bar.h"
+#include "tools/screed/cli/progress_bar.h"
 
 namespace screed {
 

@@ -19,7 +19,7 @@
 #include "nn/terrain/window_network.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
-#include "tools/screed/cli/task_bar.h"
+#include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/viewer/camera.h"
 #include "tools/screed/viewer/pixel_drawing.h"
 #include "tools/screed/viewer/terrain_image.h"

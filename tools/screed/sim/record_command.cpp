@@ -45,7 +45,7 @@ void print_session(const SimulationSummary& s) {
 }
 
 int run_record(const RecordArguments& arguments, const std::string& version) {
-  if (arguments.runs.files.empty()) throw UsageError("FILE is required", "screed record");
+  if (arguments.runs.files.empty()) throw UsageError("FILE is required");
   std::vector<std::string> overrides = {std::string("experiment.algorithm=") + kTrainingDriveName};
   if (arguments.seed.has_value()) add_seed(*arguments.seed, overrides);
   if (arguments.frames.has_value())

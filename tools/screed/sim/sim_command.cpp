@@ -16,7 +16,6 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
-#include "tools/screed/cli/number_text.h"
 #include "tools/screed/cli/run_batch.h"
 #include "tools/screed/cli/world_choice.h"
 #include "tools/screed/viewer/keyboard_driver.h"
@@ -189,7 +188,7 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
               << experiment_key_table() << robot_section_table();
     return 0;
   }
-  if (arguments.runs.files.empty()) throw UsageError("FILE is required", "screed sim");
+  if (arguments.runs.files.empty()) throw UsageError("FILE is required");
   std::vector<std::string> overrides;
   if (arguments.seed.has_value())
     overrides.push_back("experiment.seed=" + std::to_string(*arguments.seed));

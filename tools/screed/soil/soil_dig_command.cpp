@@ -8,7 +8,7 @@
 #include "host_sim/soil_validation/dig_test.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
-#include "tools/screed/cli/task_bar.h"
+#include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {

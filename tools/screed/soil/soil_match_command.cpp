@@ -6,7 +6,7 @@
 #include "host_sim/soil_validation/particle_plate.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
-#include "tools/screed/cli/task_bar.h"
+#include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {

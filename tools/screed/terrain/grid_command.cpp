@@ -25,7 +25,6 @@
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
-#include "tools/screed/cli/task_bar.h"
 
 namespace screed {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "host_sim/core/errors.h"
-#include "tools/screed/cli/number_text.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed::viewer {
 namespace {

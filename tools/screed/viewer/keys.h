@@ -1,7 +1,7 @@
 // Keys as the viewer names them, whatever they come from.
 #pragma once
 
-#include "tools/screed/cli/emergency_stop_key.h"
+#include "tools/screed/cli/terminal_screen.h"
 
 namespace screed::viewer {
 

@@ -7,7 +7,7 @@
 #include "host_sim/run/scene/log_session.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
-#include "tools/screed/cli/task_bar.h"
+#include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/viewer/recorded_viewer.h"
 #include "tools/screed/viewer/view_options.h"
 

@@ -1,12 +1,11 @@
 // --help: its form, and that of every subcommand.
-#include "tools/command_line/help_page.h"
+#include "tools/command_line/help.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <regex>
 
-#include "tools/command_line/command_tree.h"
 #include "tools/screed/cli/command_line.h"
 
 namespace screed {

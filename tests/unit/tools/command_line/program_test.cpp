@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tools/command_line/suggestion.h"
-
 namespace screed {
 namespace {
 

@@ -6,7 +6,7 @@
 #include "host_sim/core/content_hash.h"
 #include "host_sim/run/session/replay.h"
 #include "tests/unit/host_sim/run/session/session_fixture.h"
-#include "tools/command_line/parser.h"
+#include "tools/command_line/program.h"
 
 namespace screed {
 namespace {

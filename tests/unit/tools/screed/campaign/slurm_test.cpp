@@ -1,5 +1,4 @@
 // Texts for Slurm and for shells, and shards.
-#include "tools/screed/campaign/slurm.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tests/temp_folder.h"
-#include "tools/command_line/command_tree.h"
+#include "tools/command_line/help.h"
 #include "tools/command_line/program.h"
 #include "tools/screed/cli/command_line.h"
 #include "tools/screed/cli/number_option.h"

@@ -1,13 +1,14 @@
-// Options that are numbers: what is taken, what is refused and how, what the help shows.
-#include "tools/screed/cli/number_option.h"
-
+// Numbers on the command line and in texts.
 #include <gtest/gtest.h>
 
-#include "tools/command_line/command_tree.h"
-#include "tools/command_line/parser.h"
+#include "tools/command_line/help.h"
+#include "tools/command_line/program.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
+
+// Options that are numbers: what is taken, what is refused and how, what the help shows.
 
 /// What the parser says about these arguments; "" when it takes them.
 std::string refusal(Command& app, const std::vector<std::string>& arguments) {
@@ -134,6 +135,31 @@ TEST(NumberText, ReadsAPairOfSides) {
        {"", "x", "40", "40x", "x30", "40x30x", "40x30 ", "4.5x3", "nanxnan", "99999999999x30"}) {
     EXPECT_FALSE(whole_pair(text).has_value()) << text;
   }
+}
+
+// Numbers as messages show them.
+
+TEST(FactorText, HasTwoDigitsBelowTen) {
+  EXPECT_EQ(factor_text(0.0), "0");
+  EXPECT_EQ(factor_text(0.0343), "0.034");
+  EXPECT_EQ(factor_text(0.4), "0.40");
+  EXPECT_EQ(factor_text(0.0996), "0.10");
+  EXPECT_EQ(factor_text(1.04), "1.0");
+  EXPECT_EQ(factor_text(9.94), "9.9");
+  EXPECT_EQ(factor_text(9.96), "10");
+  EXPECT_EQ(factor_text(12.6), "13");
+  EXPECT_EQ(factor_text(1234.4), "1234");
+}
+
+TEST(ChangeText, SaysWhetherItIsBetter) {
+  EXPECT_EQ(change_text(20.0, 13.0), "-35.0 % better");
+  EXPECT_EQ(change_text(20.0, 21.0), "+5.0 % worse");
+  EXPECT_EQ(change_text(20.0, 20.001), "");
+  EXPECT_EQ(change_text(0.0, 0.0), "");
+  EXPECT_EQ(change_text(0.0, 1.0), "worse");
+  EXPECT_EQ(share_change_text(0.25, 0.5), "+25.0 points better");
+  EXPECT_EQ(share_change_text(0.5, 0.498), "-0.2 points worse");
+  EXPECT_EQ(share_change_text(0.5, 0.5), "");
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "commands.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
-#include "tools/command_line/parser.h"
+#include "tools/command_line/program.h"
 
 namespace screed {
 namespace {

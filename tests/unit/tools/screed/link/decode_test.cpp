@@ -17,7 +17,6 @@
 #include "tests/temp_folder.h"
 #include "tools/screed/link/decode_command.h"
 #include "tools/screed/link/plot_command.h"
-#include "tools/screed/link/plot_signals.h"
 
 namespace screed {
 namespace {

@@ -1,5 +1,5 @@
 // The remembered link: where its file is, what it keeps, what it refuses.
-#include "tools/screed/link/remembered_link.h"
+#include "tools/screed/link/robot_link.h"
 
 #include <gtest/gtest.h>
 

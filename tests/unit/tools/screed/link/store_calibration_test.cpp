@@ -1,6 +1,6 @@
 // Storing a calibration: all values or none where that can be known before, and a message that says
 // what is stored where not.
-#include "tools/screed/link/store_calibration.h"
+#include "tools/screed/link/calibrate_command.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/task_progress.h"
-#include "tools/screed/cli/parameter_names.h"
+#include "tools/screed/link/named_parameters.h"
 
 namespace screed {
 namespace {

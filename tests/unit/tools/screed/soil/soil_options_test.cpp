@@ -1,8 +1,8 @@
 // Options and JSON of `screed soil` against the table of soil parameters.
 #include <gtest/gtest.h>
 
-#include "tools/command_line/command_tree.h"
-#include "tools/command_line/parser.h"
+#include "tools/command_line/help.h"
+#include "tools/command_line/program.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {

@@ -1,4 +1,4 @@
-// A command line in words that people read. Help, completion and manual are made from it.
+// A command line in words that people read. Help, completion and manual are made from them.
 #pragma once
 
 #include <string>
@@ -44,5 +44,8 @@ struct CommandNode {
 
 /// All in the order in which they were registered.
 CommandNode command_tree(const Command& command);
+
+/// The page of a program or of one of its subcommands under --help: one form, 80 columns wide.
+std::string help_page(const Command& command);
 
 }  // namespace screed

@@ -1,4 +1,4 @@
-// Storing what a calibration found in the robot: all of it, or a message that says how much.
+// `screed calibrate` stores what it found in the robot: all of it, or a message that says how much.
 #pragma once
 
 #include <cstdint>
