@@ -34,8 +34,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-std::string nearest_word(const std::string& mistyped,
-                                const std::vector<std::string>& words) {
+std::string nearest_word(const std::string& mistyped, const std::vector<std::string>& words) {
   std::string nearest;
   std::size_t least = 0;
   for (const std::string& word : words) {
