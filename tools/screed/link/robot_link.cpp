@@ -8,7 +8,7 @@
 #include <iostream>
 #include <sstream>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/ini_file.h"
