@@ -21,7 +21,7 @@ ASAN_UNIT := command command_key command_session corruption ground_station host_
   supervisor supervisor_fault telemetry track_slip
 # Files: logs, schemas, experiments, images, meshes, robots, sessions, models, listings of an image.
 ASAN_UNIT += attitude_command avr_order avr_stack board_table candump_log content_hash decode \
-  experiment grey_image half_written header_export height_field height_series ini_file json model_file network \
+  experiment grey_image half_written height_field height_series ini_file json model_file network \
   picture run_folder schema schema_compiler session session_csv session_damage \
   session_replay urdf urdf_refusal urdf_roles urdf_body
 # Grids that a position indexes.
@@ -45,8 +45,7 @@ ASAN_COMMANDS := $(addprefix tools/screed/,link/attitude_command.cpp link/decode
   link/plot_command.cpp sim/replay_command.cpp cli/interrupt.cpp cli/number_option.cpp cli/progress_bar.cpp)
 ASAN_LEFT_OUT := $(addprefix nn/,training/% terrain/% surrogate/% slip/% data/%) \
   $(addprefix host_sim/,search/% benchmark/% campaign/% \
-  soil_validation/soil_fit.cpp soil_validation/wheel_%.cpp soil_validation/plate_press.cpp \
-  soil_validation/particle_plate.cpp)
+  soil_validation/soil_fit.cpp soil_validation/wheel_%.cpp soil_validation/plate_press.cpp)
 ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(COMMAND_LINE_SOURCES) \
   $(filter-out tools/% $(ASAN_LEFT_OUT),$(LIBRARY_SOURCES))
 HOT_SOURCES := $(filter-out $(COLD_SOURCES),$(HOST_SOURCES))

@@ -1,5 +1,5 @@
-// Fits a soil's parameters to measurements: least squares over the limits of wheels (wheel_limit.h)
-// and Bekker's law for plates, with the uncertainty of each parameter.
+// Fits a soil's parameters to measurements: least squares over the limits of wheels
+// (wheel_testbed.h) and Bekker's law for plates, with the uncertainty of each parameter.
 #pragma once
 
 #include <functional>

@@ -8,7 +8,7 @@
 
 #include "host_sim/core/lanes/instruction_set.h"
 #include "nn/batch/block_kernel.h"
-#include "nn/model/integer_network.h"
+#include "nn/model/quantiser.h"
 
 namespace screed::nn {
 

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -67,5 +70,70 @@ class NamedFeature {
   std::string name_;
   std::vector<Term> terms_;  ///< one, or two that are subtracted
 };
+
+/// Features of one recorded session as columns of numbers, a row a frame. All columns are of the
+/// same length.
+struct FeatureTable {
+  std::string source;                        ///< name of the session
+  std::string content_hash;                  ///< of the session
+  std::vector<std::string> names;            ///< of the columns
+  std::vector<std::vector<double>> columns;  ///< as many as names
+  std::vector<std::uint64_t> frames;         ///< row of the session, a row
+
+  std::size_t rows() const { return frames.size(); }
+  bool has(const std::string& name) const;
+  /// Throws std::out_of_range when there is no such column.
+  const std::vector<double>& column(const std::string& name) const;
+  std::vector<double>& column(const std::string& name);
+
+  /// Drops the rows whose mark is 0; one mark a row.
+  void keep(const std::vector<std::uint8_t>& marks);
+};
+
+/// The session's training frames (Algorithm 5). Throws InputError for an unknown feature, a session
+/// that cannot be read, one without training frames, and a feature that is not a finite number.
+FeatureTable read_features(const std::filesystem::path& session,
+                           const std::vector<std::string>& features);
+
+/// The session of that name in a folder of sessions: NAME/session.h5, or NAME-NNNN/session.h5 with
+/// the highest number. Throws InputError when there is none.
+std::filesystem::path find_session(const std::filesystem::path& folder, const std::string& name);
+
+/// What a network of motion may see of a robot and of its ground, by the names that model files use
+/// for their inputs. Units are those of the features: displacements and turns are of one frame of
+/// 10 ms.
+enum class MotionSignal : std::uint8_t {
+  kForward1,
+  kSideways1,
+  kTurn1,
+  kTrackLeft,
+  kTrackRight,
+  kWheelLeft,
+  kWheelRight,
+  kPitch,
+  kRoll,
+  kSpeed,
+  kSpin,
+  kClimb,
+  kLean,
+  kSlide,
+  kPivot,
+};
+inline constexpr std::size_t kMotionSignals = 15;
+
+struct MotionSignalInfo {
+  MotionSignal signal;
+  const char* name;
+  const char* unit;
+  const char* meaning;
+};
+
+/// Every signal, in the order of the enumeration.
+std::span<const MotionSignalInfo> motion_signals();
+std::optional<MotionSignal> motion_signal_named(std::string_view name);
+
+constexpr std::size_t row_of(MotionSignal signal) {
+  return static_cast<std::size_t>(signal);
+}
 
 }  // namespace screed::nn

@@ -11,6 +11,8 @@ namespace screed::nn {
 namespace {
 
 constexpr double kMaxMeanWidth = 100'000.0;
+constexpr double kOne = 4294967296.0;   // 2^32
+constexpr double kMaxFixedPoint = 1e6;  // of a normalised value: sums of the widest mean stay exact
 constexpr const char* kBeyond = "remove_beyond";
 constexpr const char* kAbove = "remove_above";
 constexpr const char* kFarOff = "remove_far";
@@ -55,21 +57,24 @@ Moments moments_of(const std::string& feature, const std::vector<FeatureTable>& 
   return {mean, std::sqrt(squares / count)};
 }
 
-Bounds bounds_of(const PreprocessingStage& stage, const std::vector<FeatureTable>& tables) {
-  if (stage.stage == kBeyond) return {stage.feature, stage.low, stage.high};
+/// The ends between which values stay.
+void learn_bounds(PreprocessingStage& stage, const std::vector<FeatureTable>& tables) {
+  if (stage.stage == kBeyond) return;
   const Moments moments = moments_of(stage.feature, tables);
   const double reach = stage.value * moments.deviation;
-  if (stage.stage == kAbove) return {stage.feature, -DBL_MAX, moments.mean + reach};
+  stage.low = -DBL_MAX;
+  stage.high = moments.mean + reach;
+  if (stage.stage == kAbove) return;
   // >= is out: the ends themselves do not stay.
-  return {stage.feature, std::nextafter(moments.mean - reach, DBL_MAX),
-          std::nextafter(moments.mean + reach, -DBL_MAX)};
+  stage.low = std::nextafter(moments.mean - reach, DBL_MAX);
+  stage.high = std::nextafter(stage.high, -DBL_MAX);
 }
 
-void remove_outside(FeatureTable& table, const Bounds& bounds) {
-  const std::vector<double>& column = table.column(bounds.feature);
+void remove_outside(FeatureTable& table, const PreprocessingStage& stage) {
+  const std::vector<double>& column = table.column(stage.feature);
   std::vector<std::uint8_t> marks(column.size());
   std::transform(column.begin(), column.end(), marks.begin(), [&](double value) {
-    return static_cast<std::uint8_t>(value >= bounds.low && value <= bounds.high);
+    return static_cast<std::uint8_t>(value >= stage.low && value <= stage.high);
   });
   table.keep(marks);
 }
@@ -184,31 +189,16 @@ std::vector<PreprocessingStage> read_preprocessing_stages(const JsonValue& list)
   return stages;
 }
 
-Preprocessing::Preprocessing(std::vector<PreprocessingStage> stages) : stages_(std::move(stages)) {}
-
-Preprocessing::Preprocessing(std::vector<PreprocessingStage> stages, std::vector<Bounds> bounds,
-                             std::vector<FeatureScale> scales)
-    : stages_(std::move(stages)), bounds_(std::move(bounds)), scales_(std::move(scales)) {}
-
-void Preprocessing::learn_stage(const PreprocessingStage& stage,
-                                const std::vector<FeatureTable>& training) {
-  if (removes(stage)) {
-    bounds_.push_back(bounds_of(stage, training));
-  } else if (stage.stage == kNormalise) {
-    scales_ = scales_of(training);
-  }
-}
-
 void Preprocessing::learn(std::vector<FeatureTable>& training, const TaskProgress& progress) {
-  bounds_.clear();
   scales_.clear();
   std::size_t done = 0;
-  for (const PreprocessingStage& stage : stages_) {
-    learn_stage(stage, training);
+  for (PreprocessingStage& stage : stages_) {
+    if (removes(stage)) learn_bounds(stage, training);
+    if (stage.stage == kNormalise) scales_ = scales_of(training);
     for (FeatureTable& table : training) {
       report_progress(progress, "pre-processing", done++, stages_.size() * training.size());
       if (removes(stage)) {
-        remove_outside(table, bounds_.back());
+        remove_outside(table, stage);
       } else if (stage.stage == kNormalise) {
         normalise(table, scales_);
       } else {
@@ -223,10 +213,9 @@ void Preprocessing::learn(std::vector<FeatureTable>& training, const TaskProgres
 }
 
 void Preprocessing::apply(FeatureTable& table, Extent extent) const {
-  std::size_t next_bounds = 0;
   for (const PreprocessingStage& stage : stages_) {
     if (removes(stage)) {
-      remove_outside(table, bounds_[next_bounds++]);
+      remove_outside(table, stage);
     } else if (stage.stage == kNormalise) {
       normalise(table, scales_);
     } else if (extent == Extent::kAll ||
@@ -241,6 +230,80 @@ const FeatureScale& Preprocessing::scale_of(const std::string& feature) const {
     if (scale.feature == feature) return scale;
   }
   throw InputError("pre-processing: no scale of '" + feature + "'; a stage normalise gives it one");
+}
+
+InputPreprocessing::InputPreprocessing(std::span<const PreprocessingStage> stages,
+                                       std::size_t robots) {
+  for (const PreprocessingStage& from : stages) {
+    if (!from.run_time || from.stage == kNormalise) continue;
+    StageState stage{};
+    if (from.stage == kQuantise) {
+      stage.kind = Kind::kQuantise;
+      stage.step = from.value;
+    } else if (from.stage == kExponential) {
+      stage.kind = Kind::kExponential;
+      stage.alpha = from.value;
+      stage.smooth.resize(robots);
+    } else if (from.stage == kMean) {
+      stage.kind = Kind::kMean;
+      stage.width = std::max<std::size_t>(1, static_cast<std::size_t>(from.value));
+      stage.last.resize(stage.width * robots);
+      stage.sums.resize(robots);
+    } else {
+      throw InputError("stage '" + from.stage +
+                       "' cannot be one of run time; allowed is normalise, quantise, exponential, "
+                       "mean");
+    }
+    stage.frames.resize(robots);
+    stages_.push_back(std::move(stage));
+  }
+}
+
+void InputPreprocessing::reset(std::size_t robot) {
+  for (StageState& stage : stages_) {
+    stage.frames[robot] = 0;
+    if (stage.kind == Kind::kMean) stage.sums[robot] = 0;
+  }
+}
+
+void InputPreprocessing::apply(std::span<double> values) {
+  for (StageState& stage : stages_) {
+    switch (stage.kind) {
+      case Kind::kQuantise:
+        for (double& value : values) value = quantised(value, stage.step);
+        break;
+      case Kind::kExponential:
+        smooth_exponentially(stage, values);
+        break;
+      case Kind::kMean:
+        take_mean(stage, values);
+        break;
+    }
+  }
+}
+
+void InputPreprocessing::smooth_exponentially(StageState& stage, std::span<double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (stage.frames[i]++ > 0) {
+      values[i] = stage.alpha * values[i] + (1.0 - stage.alpha) * stage.smooth[i];
+    }
+    stage.smooth[i] = values[i];
+  }
+}
+
+void InputPreprocessing::take_mean(StageState& stage, std::span<double> values) {
+  std::int64_t* row = &stage.last[stage.next_row * values.size()];
+  stage.next_row = (stage.next_row + 1) % stage.width;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (stage.frames[i] == stage.width) {
+      stage.sums[i] -= row[i];
+    } else {
+      ++stage.frames[i];
+    }
+    row[i] = std::llround(std::clamp(values[i], -kMaxFixedPoint, kMaxFixedPoint) * kOne);
+    stage.sums[i] += row[i];
+    values[i] = static_cast<double>(stage.sums[i]) / (kOne * static_cast<double>(stage.frames[i]));
+  }
 }
 
 }  // namespace screed::nn

@@ -13,7 +13,8 @@
 
 #include "host_sim/core/json_reader.h"
 #include "host_sim/core/task_progress.h"
-#include "nn/data/feature_table.h"
+#include "nn/data/features.h"
+#include "nn/model/model_file.h"
 
 namespace screed::nn {
 
@@ -22,15 +23,6 @@ struct FeatureScale {
   std::string feature;
   double middle = 0.0;
   double half_range = 1.0;
-};
-
-/// A stage as configured.
-struct PreprocessingStage {
-  std::string stage;
-  std::string feature;  ///< of an outlier stage
-  double low = 0.0;     ///< outside: removed
-  double high = 0.0;
-  double value = 0.0;  ///< sigmas, alpha, width or step
 };
 
 /// What is known of a stage before its numbers.
@@ -46,20 +38,13 @@ std::span<const PreprocessingStageKind> preprocessing_stage_kinds();
 /// A list of objects {"stage": NAME, ...}. Throws InputError with the place.
 std::vector<PreprocessingStage> read_preprocessing_stages(const JsonValue& list);
 
-/// What an outlier stage learned: the ends between which values stay.
-struct Bounds {
-  std::string feature;
-  double low;
-  double high;
-};
-
 /// Learns from training tables and applies to any.
 class Preprocessing {
  public:
-  explicit Preprocessing(std::vector<PreprocessingStage> stages);
-  /// With what was learned before.
-  Preprocessing(std::vector<PreprocessingStage> stages, std::vector<Bounds> bounds,
-                std::vector<FeatureScale> scales);
+  /// With the scales, and the ends of the outlier stages, where they were learned before.
+  explicit Preprocessing(std::vector<PreprocessingStage> stages,
+                         std::vector<FeatureScale> scales = {})
+      : stages_(std::move(stages)), scales_(std::move(scales)) {}
 
   /// Goes through the stages over the training tables, learning on the way, and leaves the tables
   /// processed. Throws InputError when nothing is left or a feature never changes.
@@ -71,17 +56,14 @@ class Preprocessing {
   /// Needs learn() or learned values.
   void apply(FeatureTable& table, Extent extent = Extent::kAll) const;
 
+  /// Those that drop frames have the learned ends.
   const std::vector<PreprocessingStage>& stages() const { return stages_; }
   /// Of the normalisation; empty when there is none.
   const std::vector<FeatureScale>& scales() const { return scales_; }
   const FeatureScale& scale_of(const std::string& feature) const;
-  const std::vector<Bounds>& bounds() const { return bounds_; }
 
  private:
-  void learn_stage(const PreprocessingStage& stage, const std::vector<FeatureTable>& training);
-
   std::vector<PreprocessingStage> stages_;
-  std::vector<Bounds> bounds_;  ///< one an outlier stage, in order
   std::vector<FeatureScale> scales_;
 };
 
@@ -95,5 +77,42 @@ void smooth_exponentially(std::vector<double>& series, double alpha);
 /// Mean over `width` values around each; at the ends over those that there are. Of an even width,
 /// one more lies before than behind.
 void smooth_by_mean(std::vector<double>& series, std::size_t width);
+
+/// What a running world does to one input of a network before the network sees it: the stages of
+/// the model's pre-processing that are marked run_time, in their order, on normalised values of any
+/// number of robots. Smoothing looks back alone: the frames ahead, which a centred mean of recorded
+/// data has, are not there yet.
+class InputPreprocessing {
+ public:
+  /// Takes those marked run_time; normalise among them changes nothing more. Throws InputError for
+  /// a stage that says nothing of a single frame.
+  InputPreprocessing(std::span<const PreprocessingStage> stages, std::size_t robots);
+
+  bool empty() const { return stages_.empty(); }
+  /// A robot begins anew: what its input was before does not count.
+  void reset(std::size_t robot);
+  /// A frame's values, one a robot.
+  void apply(std::span<double> values);
+
+ private:
+  enum class Kind : std::uint8_t { kQuantise, kExponential, kMean };
+  struct StageState {
+    Kind kind;
+    double step = 0.0;   ///< of kQuantise
+    double alpha = 0.0;  ///< of kExponential
+    /// Of kMean: the last `width` values of all robots, a row a frame, in steps of 2^-32, so that
+    /// their sums are exact however long the world runs.
+    std::size_t width = 0;
+    std::size_t next_row = 0;
+    std::vector<std::int64_t> last;
+    std::vector<std::int64_t> sums;
+    std::vector<double> smooth;       ///< of kExponential, a value a robot
+    std::vector<std::size_t> frames;  ///< that count, a number a robot
+  };
+  static void smooth_exponentially(StageState& stage, std::span<double> values);
+  static void take_mean(StageState& stage, std::span<double> values);
+
+  std::vector<StageState> stages_;
+};
 
 }  // namespace screed::nn

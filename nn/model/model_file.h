@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "nn/model/integer_network.h"
 #include "nn/model/quantiser.h"
 
 namespace screed::nn {
@@ -45,14 +44,13 @@ struct ModelNetwork {
   std::vector<GoldenVector> golden;
 };
 
-/// A stage of the pre-processing (nn/data/preprocessing.h) with what it learned from the training
-/// data.
-struct ModelPreprocessingStage {
+/// A stage of the pre-processing (nn/data/preprocessing.h).
+struct PreprocessingStage {
   std::string stage;
   std::string feature;  ///< of a stage that drops frames, else empty
-  double low = 0.0;     ///< outside of which they are dropped
+  double low = 0.0;     ///< outside of which they are dropped: configured, or learned
   double high = 0.0;
-  double value = 0.0;     ///< width, alpha or step of the others
+  double value = 0.0;     ///< sigmas (not in a model's file), width, alpha or step
   bool run_time = false;  ///< a running world applies it to the inputs, in their order
 };
 
@@ -61,8 +59,8 @@ struct Model {
   std::string description;    ///< how it was made, one line
   std::uint64_t seed = 0;     ///< of the training
   std::string training_data;  ///< hash over what it was trained on
-  std::vector<ModelPreprocessingStage>
-      stages;  ///< in their order; "normalise" is the channels' scale
+  /// In their order; "normalise" is the channels' scale.
+  std::vector<PreprocessingStage> stages;
   std::vector<ModelNetwork> networks;
 };
 
@@ -79,5 +77,11 @@ Model parse_model(const std::string& text, const std::string& name);
 std::string model_text(const Model& model);
 /// The file appears complete or not at all. Throws RunError when it cannot be written.
 void write_model(const std::filesystem::path& file, const Model& model);
+
+/// The text of a C++ header for the robot: parameters in program memory, and a function a network
+/// that runs it through nn/infer, which is all it includes. Namespace screed::nn::model_<name>; for
+/// each network the parameters, `run_<outputs>`, how inputs and outputs are scaled (in comments),
+/// and the golden vectors.
+std::string model_header(const Model& model);
 
 }  // namespace screed::nn

@@ -1,17 +1,94 @@
-// Forward and backward pass, and the order of the drives.
 #include "nn/slip/gated_trainer.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
-#include "nn/training/parameter_update.h"
+#include "nn/training/trainer.h"
 
 namespace screed::nn {
+namespace {
+
+Eigen::MatrixXf random_matrix(Eigen::Index rows, Eigen::Index columns, WorldRandom& random) {
+  const double deviation = 1.0 / std::sqrt(static_cast<double>(columns));
+  Eigen::MatrixXf matrix(rows, columns);
+  for (float& weight : matrix.reshaped()) weight = static_cast<float>(deviation * random.normal());
+  return matrix;
+}
+
+float nearest(float weight) {
+  return std::clamp(std::round(weight * kWeightScale), -127.0F, 127.0F) / kWeightScale;
+}
+
+}  // namespace
+
+GatedShape GatedNetwork::shape() const {
+  const auto units = static_cast<std::uint8_t>(candidates.rows());
+  return {static_cast<std::uint8_t>(candidates.cols() - 1 - units), units,
+          static_cast<std::uint8_t>(outputs.rows())};
+}
+
+GatedNetwork random_network(const GatedShape& shape, std::uint64_t seed) {
+  WorldRandom random(seed, "gated network");
+  GatedNetwork network;
+  network.candidates = random_matrix(shape.units, shape.row_size(), random);
+  network.gates = random_matrix(shape.units, shape.row_size(), random);
+  network.outputs = random_matrix(shape.outputs, 1 + shape.units, random);
+  network.candidates.col(0).setZero();
+  network.outputs.col(0).setZero();
+  // (bias + 1)^2 / 4 of the way a step: 1 / 100 to 2 / 3.
+  for (Eigen::Index i = 0; i < shape.units; ++i) {
+    const float share = static_cast<float>(i) / static_cast<float>(std::max(1, shape.units - 1));
+    network.gates(i, 0) = -0.8F + 1.4F * share;
+  }
+  return network;
+}
+
+GatedNetwork rounded(GatedNetwork network) {
+  for (Eigen::MatrixXf* matrix : {&network.candidates, &network.gates, &network.outputs})
+    *matrix = matrix->unaryExpr(&nearest);
+  return network;
+}
+
+std::vector<std::int8_t> parameters_of(const GatedNetwork& network) {
+  std::vector<std::int8_t> parameters;
+  for (const Eigen::MatrixXf* matrix : {&network.candidates, &network.gates, &network.outputs}) {
+    for (Eigen::Index row = 0; row < matrix->rows(); ++row) {
+      for (Eigen::Index column = 0; column < matrix->cols(); ++column) {
+        parameters.push_back(
+            static_cast<std::int8_t>(std::lround(nearest((*matrix)(row, column)) * kWeightScale)));
+      }
+    }
+  }
+  return parameters;
+}
+
+GatedRunner::GatedRunner(const GatedShape& shape, std::vector<std::int8_t> parameters)
+    : shape_(shape),
+      parameters_(std::move(parameters)),
+      values_(shape.values()),
+      candidates_(shape.units),
+      states_(shape.units),
+      outputs_(shape.outputs) {}
+
+void GatedRunner::forget() {
+  std::fill(values_.begin() + shape_.inputs, values_.end(), std::int8_t{0});
+  std::fill(states_.begin(), states_.end(), std::int16_t{0});
+}
+
+std::span<const std::int16_t> GatedRunner::step(std::span<const std::int8_t> inputs) {
+  std::copy(inputs.begin(), inputs.end(), values_.begin());
+  gated_candidates(shape_, parameters_.data(), values_.data(), candidates_.data());
+  gated_update(shape_, parameters_.data(), values_.data(), candidates_.data(), states_.data(),
+               outputs_.data());
+  return outputs_;
+}
+
+// ---- training: forward and backward pass, the order of the drives, epochs
+
 namespace {
 
 using Eigen::Index;
@@ -21,9 +98,11 @@ constexpr Index kWindow = 128;  // steps, 5 s
 constexpr Index kLanes = 16;
 constexpr float kShareLoss = 3.0F;
 constexpr float kUsualSpeed = 0.15F;
+constexpr double kFirstRate = 0.01;
+constexpr double kFinalRate = 0.02;   // share of it in the last epoch; geometric between
 constexpr double kRoundedFrom = 0.4;  // of the epochs
 /// Gradient of what is cut at its ends: a little beyond them, so that no unit is lost for ever.
-constexpr float kBeyond = 0.05F;
+constexpr float kSlopeBeyond = 0.05F;
 constexpr float kMaxNorm = 1.0F;  // of a window's gradient
 /// Deviations of what is added to the inputs for a window, in their units: other soils, motors and
 /// sensors than those of the drives. In the order of slip_watch.h.
@@ -50,16 +129,13 @@ MatrixXf cut(const MatrixXf& sums) {
 }
 
 MatrixXf inside(const MatrixXf& sums) {
-  return (sums.array().abs() < 1.0F).select(MatrixXf::Ones(sums.rows(), sums.cols()), kBeyond);
+  return (sums.array().abs() < 1.0F).select(MatrixXf::Ones(sums.rows(), sums.cols()), kSlopeBeyond);
 }
 
 class Pass {
  public:
-  Pass(const GatedNetwork& network, Index lanes, double held_emphasis)
-      : network_(network),
-        shape_(network.shape()),
-        window_(shape_, lanes),
-        held_emphasis_(static_cast<float>(held_emphasis)) {}
+  Pass(const GatedNetwork& network, Index lanes)
+      : network_(network), shape_(network.shape()), window_(shape_, lanes) {}
 
   Window& window() { return window_; }
 
@@ -103,7 +179,7 @@ class Pass {
       const SlipStep* step = window_.steps[t][static_cast<std::size_t>(lane)];
       if (step == nullptr) continue;
       const float logit = outputs(0, lane);
-      const float weight = step->held_weight * (step->held > 0.5F ? held_emphasis_ : 1.0F);
+      const float weight = step->held_weight;
       loss += static_cast<double>(weight * (std::log1p(std::exp(-std::abs(logit))) +
                                             std::max(logit, 0.0F) - step->held * logit));
       delta(0, lane) = weight * (1.0F / (1.0F + std::exp(-logit)) - step->held);
@@ -150,7 +226,6 @@ class Pass {
   const GatedNetwork& network_;
   GatedShape shape_;
   Window window_;
-  float held_emphasis_;
   std::vector<MatrixXf> states_;  ///< before the first step and after each
 };
 
@@ -169,15 +244,9 @@ class Feed {
  public:
   Feed(const std::vector<std::vector<SlipStep>>& sequences, std::uint64_t seed, std::size_t epoch)
       : sequences_(sequences),
-        order_(sequences.size()),
+        order_(shuffled(sequences.size(), {seed + 1000003 * epoch, "order of drives"})),
         lanes_(kLanes),
-        random_(seed + 1000003 * epoch, "offsets") {
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    WorldRandom random(seed + 1000003 * epoch, "order of drives");
-    for (std::size_t i = order_.size(); i > 1; --i) {
-      std::swap(order_[i - 1], order_[(std::uint64_t{random.next()} * i) >> 32U]);
-    }
-  }
+        random_(seed + 1000003 * epoch, "offsets") {}
 
   /// False when too few lanes still have steps.
   bool fill(Window& window) {
@@ -209,58 +278,78 @@ class Feed {
   }
 
   const std::vector<std::vector<SlipStep>>& sequences_;
-  std::vector<std::size_t> order_;
+  std::vector<std::uint32_t> order_;
   std::size_t next_ = 0;
   std::vector<std::span<const SlipStep>> lanes_;
   WorldRandom random_;
+};
+
+class GatedTrainer : public Trainer {
+ public:
+  GatedTrainer(const std::vector<std::vector<SlipStep>>& sequences,
+               const GatedTrainingOptions& options)
+      : network(random_network({kSlipInputs, options.units, kSlipOutputs}, options.seed)),
+        sequences_(sequences),
+        options_(options) {}
+
+  std::optional<EpochLoss> train_epoch(std::size_t epoch,
+                                       const std::function<bool()>& /*stop*/) override {
+    const double done = static_cast<double>(epoch) / static_cast<double>(options_.epochs);
+    const double rate = kFirstRate * std::pow(kFinalRate, done);
+    Feed feed(sequences_, options_.seed, epoch);
+    MatrixXf states = MatrixXf::Zero(options_.units, kLanes);
+    double loss = 0.0;
+    std::size_t windows = 0;
+    GatedNetwork forward = network;
+    Pass pass(forward, kLanes);
+    while (feed.fill(pass.window())) {
+      forward = done >= kRoundedFrom ? rounded(network) : network;
+      GatedNetwork gradient = zeros(network);
+      loss += pass.run(states, gradient);
+      ++windows;
+      update(gradient, rate);
+    }
+    loss /= static_cast<double>(std::max<std::size_t>(1, windows));
+    return EpochLoss{loss, loss};
+  }
+
+  GatedNetwork network;
+
+ private:
+  void update(GatedNetwork& gradient, double rate) {
+    float norm = 0.0F;
+    for (const MatrixXf* matrix : matrices(gradient)) norm += matrix->squaredNorm();
+    const float scale = std::min(1.0F, kMaxNorm / std::sqrt(norm + 1e-12F));
+    for (std::size_t i = 0; i < updates_.size(); ++i) {
+      MatrixXf& of = *matrices(gradient)[i];
+      of *= scale;
+      MatrixXf& parameters = *matrices(network)[i];
+      update_parameters(
+          OptimiserKind::kAdam, rate, 0.0, {of.data(), static_cast<std::size_t>(of.size())},
+          {parameters.data(), static_cast<std::size_t>(parameters.size())}, updates_[i]);
+      parameters = parameters.cwiseMax(-kMaxWeight).cwiseMin(kMaxWeight);
+    }
+  }
+
+  const std::vector<std::vector<SlipStep>>& sequences_;
+  const GatedTrainingOptions& options_;
+  std::array<UpdateState, 3> updates_;
 };
 
 }  // namespace
 
 GatedNetwork train_gated(const std::vector<std::vector<SlipStep>>& sequences,
                          const GatedTrainingOptions& options) {
-  std::size_t steps = 0;
-  for (const auto& sequence : sequences) steps += sequence.size();
-  if (steps == 0) throw RunError("slip: no steps to learn from");
-  GatedNetwork network = random_network({kSlipInputs, options.units, kSlipOutputs}, options.seed);
-  std::vector<UpdateState> updates(3);
-  for (std::size_t epoch = 0; epoch < options.epochs; ++epoch) {
-    const double done = static_cast<double>(epoch) / static_cast<double>(options.epochs);
-    const double rate = options.learning_rate * std::pow(options.final_rate, done);
-    Feed feed(sequences, options.seed, epoch);
-    MatrixXf states = MatrixXf::Zero(options.units, kLanes);
-    double loss = 0.0;
-    std::size_t windows = 0;
-    GatedNetwork forward = network;
-    Pass pass(forward, kLanes, options.held_emphasis);
-    while (feed.fill(pass.window())) {
-      forward = done >= kRoundedFrom ? rounded(network) : network;
-      GatedNetwork gradient = zeros(network);
-      loss += pass.run(states, gradient);
-      ++windows;
-      float norm = 0.0F;
-      for (const MatrixXf* matrix : matrices(gradient)) norm += matrix->squaredNorm();
-      const float scale = std::min(1.0F, kMaxNorm / std::sqrt(norm + 1e-12F));
-      for (std::size_t i = 0; i < 3; ++i) {
-        MatrixXf& of = *matrices(gradient)[i];
-        of *= scale;
-        MatrixXf& parameters = *matrices(network)[i];
-        update_parameters(
-            OptimiserKind::kAdam, rate, 0.0, {of.data(), static_cast<std::size_t>(of.size())},
-            {parameters.data(), static_cast<std::size_t>(parameters.size())}, updates[i]);
-        parameters = parameters.cwiseMax(-kMaxWeight).cwiseMin(kMaxWeight);
-      }
-    }
-    if (options.progress) {
-      options.progress(epoch + 1, loss / static_cast<double>(std::max<std::size_t>(1, windows)));
-    }
-  }
-  return rounded(network);
+  if (std::all_of(sequences.begin(), sequences.end(), [](const auto& one) { return one.empty(); }))
+    throw RunError("slip: no steps to learn from");
+  GatedTrainer trainer(sequences, options);
+  run_epochs(trainer, options.epochs, options.progress);
+  return rounded(trainer.network);
 }
 
 GatedGradient gated_gradient(const GatedNetwork& network,
                              const std::vector<std::vector<SlipStep>>& lanes) {
-  Pass pass(network, static_cast<Index>(lanes.size()), 1.0);
+  Pass pass(network, static_cast<Index>(lanes.size()));
   for (std::size_t t = 0; t < pass.window().steps.size(); ++t) {
     for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
       if (t < lanes[lane].size()) pass.window().steps[t][lane] = &lanes[lane][t];

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,5 +63,19 @@ SlipDrive drive(const StuckScenario& scenario, const TaskProgress& progress = {}
 std::vector<SlipDrive> drive_all(const std::vector<StuckScenario>& scenarios, unsigned threads,
                                  const TaskProgress& progress = {},
                                  const std::filesystem::path& folder = {});
+
+/// Calls work(i) for 0 to count - 1, from so many threads. After an exception none begins any more,
+/// and it is thrown again.
+void in_threads(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work);
+
+/// Name of the file of a scenario's drive: kind, seed and a hash of its experiment's text.
+std::string archive_name(const StuckScenario& scenario);
+
+/// The drive of that file; nothing when there is no such file. Throws InputError when the file is
+/// of another format or cut short.
+std::optional<SlipDrive> read_drive(const std::filesystem::path& file,
+                                    const StuckScenario& scenario);
+/// The file appears complete or not at all. Throws RunError when it cannot be written.
+void write_drive(const std::filesystem::path& file, const SlipDrive& drive);
 
 }  // namespace screed::nn

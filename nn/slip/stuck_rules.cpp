@@ -1,10 +1,12 @@
-// Counting by the true motion.
+// The true motion, alarms counted by it, the watch replayed, labels, and figures over drives.
 #include "nn/slip/stuck_rules.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "hal/sample.h"
+#include "host_sim/run/experiment/board_table.h"
 
 namespace screed::nn {
 namespace {
@@ -137,6 +139,145 @@ StuckCounts count_alarms(const SlipDrive& drive, const TrueMotion& motion,
     count_free(motion, watch, counts);
   }
   return counts;
+}
+
+void replay(const SlipDrive& drive,
+            const std::function<void(std::size_t tick, const SlipWatch& watch,
+                                     const ReplayedTick& what)>& on_tick) {
+  SlipWatch watch(board_constants_of(kDefaultBoard).tread_mm);
+  bool forgets = true;
+  for (std::size_t i = 0; i < drive.ticks.size(); ++i) {
+    const SlipTick& tick = drive.ticks[i];
+    const bool half_done = watch.half_done();
+    // Packets leave in every second tick.
+    watch.tick({tick.speed_left, tick.effort_left}, {tick.speed_right, tick.effort_right},
+               tick.gyro.data(), tick.accel.data(), tick.sin_pitch_q14, tick.yaw_rate, i % 2 == 0);
+    const int faster = std::max(std::abs(int{tick.speed_left}), std::abs(int{tick.speed_right}));
+    const bool fast = faster >= SlipWatch::kMinTrackSpeed_dmm_per_s;
+    forgets = forgets || faster < SlipWatch::kStanding_dmm_per_s;
+    const ReplayedTick what = {tick.running && fast, half_done && !watch.half_done() && fast,
+                               forgets};
+    on_tick(i, watch, what);
+    if (what.concluded) forgets = false;
+  }
+}
+
+std::vector<WatchTick> watch_of(const SlipDrive& drive) {
+  std::vector<WatchTick> ticks;
+  ticks.reserve(drive.ticks.size());
+  replay(drive, [&](std::size_t /*tick*/, const SlipWatch& watch, const ReplayedTick& what) {
+    ticks.push_back({what.evaluated, watch.stuck()});
+  });
+  return ticks;
+}
+
+// ---- steps of the network, with labels
+
+namespace {
+
+constexpr std::size_t kMotionWindow = 15;  // ticks before and after, over which motion is taken
+constexpr double kHeldMax = 0.25;
+constexpr double kFreeMin = 0.4;
+constexpr std::size_t kShareWindow = kTickRate_hz / 2;
+
+}  // namespace
+
+std::vector<SlipStep> slip_steps(const SlipDrive& drive, const TrueMotion& motion) {
+  std::vector<SlipStep> steps;
+  replay(drive, [&](std::size_t i, const SlipWatch& watch, const ReplayedTick& what) {
+    if (!what.concluded) return;
+    const SlipTick& tick = drive.ticks[i];
+    SlipStep step{};
+    std::copy_n(watch.network_inputs(), kSlipInputs, step.inputs.begin());
+    step.tick = static_cast<std::uint32_t>(i);
+    step.forgets = what.forgets;
+    if (tick.running) {
+      const double share =
+          motion.travel_share(i > kMotionWindow ? i - kMotionWindow : 0, i + kMotionWindow);
+      const double before = motion.travel_share(i > kShareWindow ? i - kShareWindow : 0, i + 1);
+      const bool free = share > kFreeMin || before > kFreeShare;
+      step.held = !free && share < kHeldMax ? 1.0F : 0.0F;
+      step.held_weight = free || share < kHeldMax ? 1.0F : 0.0F;
+      const auto forward = motion.forward_share(i > kShareWindow ? i - kShareWindow : 0, i);
+      step.share = static_cast<float>(forward.share);
+      step.share_weight =
+          static_cast<float>(forward.belts_m * kTickRate_hz / static_cast<double>(kShareWindow));
+    }
+    steps.push_back(step);
+  });
+  return steps;
+}
+
+// ---- many drives
+
+namespace {
+
+constexpr double kTrapped_s = 14.0;
+
+void add_drive(SlipFigures& figures, const SlipDrive& drive) {
+  const TrueMotion motion(drive);
+  std::vector<WatchTick> watch;
+  replay(drive, [&](std::size_t i, const SlipWatch& it, const ReplayedTick& what) {
+    watch.push_back({what.evaluated, it.stuck()});
+    if (!what.concluded || !drive.ticks[i].running) return;
+    const auto forward = motion.forward_share(i > kShareWindow ? i - kShareWindow : 0, i);
+    const double said = it.travel_share() / 255.0;
+    figures.share.add(said, forward.share, forward.belts_m);
+    figures.share_by_ground[drive.ground].add(said, forward.share, forward.belts_m);
+  });
+  const StuckCounts counts = count_alarms(drive, motion, watch);
+  figures.all += counts;
+  figures.by_trap[drive.trap] += counts;
+  figures.by_ground[drive.ground] += counts;
+  if (counts.detected != 0) figures.delays_s.push_back(counts.delay_s);
+  if (counts.dug_in > counts.detected) figures.missed.push_back(drive.seed);
+  figures.failures += drive.failure.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+std::vector<StuckScenario> scenarios(const SlipCampaign& campaign) {
+  std::vector<StuckScenario> all;
+  const auto add_kind = [&](ScenarioKind kind, std::size_t count, double duration_s) {
+    for (std::size_t i = 0; i < count; ++i)
+      all.push_back(stuck_scenario(campaign.seed + i, kind, duration_s));
+  };
+  add_kind(ScenarioKind::kTrapped, campaign.trapped, kTrapped_s);
+  add_kind(ScenarioKind::kFree, campaign.free, campaign.duration_s);
+  add_kind(ScenarioKind::kOrdinary, campaign.ordinary, campaign.duration_s);
+  return all;
+}
+
+std::vector<SlipDrive> run(const SlipCampaign& campaign, const TaskProgress& progress) {
+  return drive_all(scenarios(campaign), campaign.threads, progress, campaign.folder);
+}
+
+void ShareError::add(double said, double truth, double weight_of_it) {
+  const double error = said - truth;
+  weight += weight_of_it;
+  sum += weight_of_it * error;
+  squares += weight_of_it * error * error;
+  true_sum += weight_of_it * truth;
+  true_squares += weight_of_it * truth * truth;
+  missing_squares += weight_of_it * (1.0 - truth) * (1.0 - truth);
+}
+
+double ShareError::rms() const {
+  return std::sqrt(squares / weight);
+}
+
+double ShareError::rms_of_one() const {
+  return std::sqrt(missing_squares / weight);
+}
+
+double ShareError::rms_of_mean() const {
+  return std::sqrt(std::max(0.0, true_squares / weight - true_mean() * true_mean()));
+}
+
+SlipFigures figures_of(const std::vector<SlipDrive>& drives) {
+  SlipFigures figures;
+  for (const SlipDrive& drive : drives) add_drive(figures, drive);
+  return figures;
 }
 
 }  // namespace screed::nn

@@ -1,16 +1,174 @@
 #include "nn/surrogate/rollout.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
 
+#include "host_sim/core/constants.h"
+#include "host_sim/core/elementary.h"
+#include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/session/export.h"
+#include "host_sim/run/world/world_setup.h"
 #include "host_sim/standin/coarse_ground.h"
 #include "host_sim/standin/standin_plant.h"
-#include "nn/surrogate/recorded_drive.h"
-#include "nn/surrogate/rollout_robot.h"
+#include "schema/values.h"
 
 namespace screed::nn {
+namespace {
+
+ImuErrors imu_errors(const Experiment& experiment) {
+  if (!experiment.sensors.noise) return ImuErrors::quiet();
+  return experiment.sensors.calibrated ? ImuErrors{} : ImuErrors::uncalibrated();
+}
+
+}  // namespace
+
+RecordedDrive::RecordedDrive(const std::filesystem::path& folder)
+    : session(folder / "session.h5"), experiment(read_experiment(folder / "experiment.ini")) {
+  if (!experiment.map.is_soil() || !session.has_heights()) {
+    throw InputError(folder.string() +
+                     ": rollouts need a session on soil (scm) with its heights, as screed "
+                     "record makes it");
+  }
+  soil = make_soil(experiment);
+  battery = make_battery(experiment, session.info().board_name);
+  frames.resize(session.frames());
+  samples.resize(session.frames());
+  session.read(0, std::span(frames));
+  session.read(0, std::span(samples));
+  while (first < frames.size() &&
+         frames[first].leveling_state !=
+             static_cast<std::int32_t>(message::LevelingState::kTrainingDrive)) {
+    ++first;
+  }
+  if (first + 3 >= frames.size()) {
+    throw InputError(folder.string() + ": Algorithm 5 drove no frame of it");
+  }
+  PlanarPose pose{frames[0].x, frames[0].y, frames[0].yaw};
+  double distance_m = 0.0;
+  double charge_c = 0.0;
+  double energy_j = 0.0;
+  for (const SimFrame& frame : frames) {
+    const double middle = pose.heading_rad + 0.5 * frame.delta_theta;
+    const auto [s, c] = portable::sine_cosine(middle);
+    motions.push_back({frame.delta_x * c + frame.delta_y * s, frame.delta_y * c - frame.delta_x * s,
+                       frame.delta_theta});
+    pose.move(motions.back());
+    poses.push_back(pose);
+    distance_m += portable::hypot(frame.delta_x, frame.delta_y);
+    distances.push_back(distance_m);
+    if (frame.battery > 0.0) charge_c += (frame.energy - energy_j) / frame.battery;
+    energy_j = frame.energy;
+    drawn_c.push_back(charge_c);
+  }
+}
+
+std::uint64_t RecordedDrive::end_of_rollout(std::uint64_t row, double distance_m,
+                                            std::uint64_t max_frames) const {
+  const std::uint64_t last = std::min<std::uint64_t>(frames.size(), row + 1 + max_frames);
+  std::uint64_t end = row + 1;
+  while (end < last && distances[end - 1] - distances[row] < distance_m) ++end;
+  return end;
+}
+
+DrivingState RecordedDrive::state(std::uint64_t row, double counts_per_turn) const {
+  const SimFrame& frame = frames[row];
+  DrivingState state;
+  state.pose = poses[row];
+  state.last = motions[row];
+  state.track_speed_m_per_s = {frame.track_left, frame.track_right};
+  const auto angle = [&](std::uint16_t count) {
+    return (count + 0.5) / counts_per_turn * 2.0 * std::numbers::pi;
+  };
+  state.shaft_angle_rad = {angle(samples[row].encoder_left), angle(samples[row].encoder_right)};
+  state.battery = battery;
+  state.battery.terminal_v = frame.battery;
+  state.battery.draw(drawn_c[row]);
+  state.battery.energy_j = frame.energy;
+  return state;
+}
+
+RolloutRobot::RolloutRobot(const SessionInfo& info, const Experiment& experiment)
+    : firmware_(info.board, info.parameters, info.credentials),
+      imu_(experiment.experiment.seed, imu_errors(experiment)),
+      counts_per_turn_(board_motor(info.board_name).counts_per_turn),
+      volt_per_lsb_(info.board.battery_uv_per_lsb * 1e-6) {}
+
+void RolloutRobot::follow(const SensorSample& recorded) {
+  const ImuTruth at_rest{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                         Eigen::Matrix3d::Identity(), 0.0};
+  firmware_.tick(recorded, output_);
+  SensorSample unused{};
+  imu_.measure(at_rest, unused);  // so that its generators stand where they stood
+}
+
+SensorSample RolloutRobot::measure(const RobotView& robot, const SensorSample& recorded) {
+  const auto counts = [&](Side side) {
+    const double turns = robot.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
+    return static_cast<std::uint16_t>(
+        static_cast<std::int64_t>(std::floor(turns * counts_per_turn_)) & 0xFFFF);
+  };
+  SensorSample sample = recorded;
+  imu_.measure(robot.motion(), sample);
+  sample.encoder_left = counts(kLeft);
+  sample.encoder_right = counts(kRight);
+  sample.battery = static_cast<std::uint16_t>(
+      std::clamp(std::round(robot.battery().terminal_v / volt_per_lsb_), 0.0, double{kBatteryMax}));
+  return sample;
+}
+
+void RolloutRobot::tick(const RobotView& robot, const SensorSample& recorded) {
+  firmware_.tick(measure(robot, recorded), output_);
+}
+
+std::array<double, 2> RolloutRobot::duty_ratio() const {
+  return {static_cast<double>(output_.duty_left) / kDutyMax,
+          static_cast<double>(output_.duty_right) / kDutyMax};
+}
+
+void StandardDeviation::add(double value) {
+  count_ += 1.0;
+  sum_ += value;
+  squares_ += value * value;
+}
+
+double StandardDeviation::deviation() const {
+  if (count_ == 0.0) return 0.0;
+  const double mean = sum_ / count_;
+  return std::sqrt(std::max(0.0, squares_ / count_ - mean * mean));
+}
+
+RolloutChecker::RolloutChecker(const RecordedDrive& recording, std::uint64_t start)
+    : recording_(recording), heading_rad_(recording.poses[start].heading_rad) {
+  rollout_.start = start;
+}
+
+void RolloutChecker::add_row(std::uint64_t row, const PlanarPose& pose) {
+  if ((row - rollout_.start) % kPathFrames == 0) rollout_.path.push_back(pose);
+  if (recording_.frames[row].angular != 0.0) straight_ = false;
+  yaw_rates_.add((pose.heading_rad - heading_rad_) / kTick_s);
+  recorded_yaw_rates_.add(recording_.motions[row].turn_rad / kTick_s);
+  heading_rad_ = pose.heading_rad;
+  const double distance = recording_.distances[row] - recording_.distances[rollout_.start];
+  while (next_ < kRolloutDistances_m.size() && distance >= kRolloutDistances_m.at(next_)) {
+    const PlanarPose& real = recording_.poses[row];
+    rollout_.checks.at(next_) = {
+        true, straight_,
+        portable::hypot(pose.x_m - real.x_m, pose.y_m - real.y_m) / kRolloutDistances_m.at(next_),
+        std::abs(pose.heading_rad - real.heading_rad)};
+    ++next_;
+  }
+}
+
+Rollout RolloutChecker::take() {
+  rollout_.yaw_rate_deviation_rad_per_s = yaw_rates_.deviation();
+  rollout_.recorded_yaw_rate_deviation_rad_per_s = recorded_yaw_rates_.deviation();
+  return std::move(rollout_);
+}
+
 namespace {
 
 Rollout by_tracks(const RecordedDrive& recording, std::uint64_t start, std::uint64_t end,

@@ -1,13 +1,29 @@
-// Track kinematics fitted to recorded drives: the baselines of rollouts.
+// Track kinematics fitted to recorded drives, frame by frame: the baselines of rollouts.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
+#include <vector>
 
-#include "nn/surrogate/motion_series.h"
-#include "nn/surrogate/track_kinematics.h"
+#include "host_sim/standin/planar_pose.h"
+#include "nn/surrogate/surrogate.h"
 
 namespace screed::nn {
+
+struct MotionFrame {
+  FrameMotion motion;
+  double track_left_m_per_s;  ///< at the frame's end
+  double track_right_m_per_s;
+  double pitch;  ///< of the ground at its beginning, as the surrogate world sees it
+  double roll;
+};
+
+using MotionSeries = std::vector<MotionFrame>;
+
+/// The frames that Algorithm 5 drove. Throws InputError, naming the folder, for a session that
+/// cannot be read, has no such frames, no recorded heights, or ground of another kind than soil.
+MotionSeries read_motion_series(const std::filesystem::path& session_folder);
 
 enum class SlipLaw : std::uint8_t {
   kConstant,  ///< a share of the speed, and of the turn

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 
@@ -35,6 +36,27 @@ std::string known_inputs() {
 }
 
 }  // namespace
+
+TrackInputs track_inputs(double left_m_per_s, double right_m_per_s, double pitch, double roll) {
+  const double mean = 0.5 * (left_m_per_s + right_m_per_s);
+  TrackInputs inputs;
+  inputs << left_m_per_s, right_m_per_s, std::abs(mean) * pitch, std::abs(mean) * roll, mean * roll;
+  return inputs;
+}
+
+FrameMotion TrackKinematics::motion(double left_m_per_s, double right_m_per_s, double pitch,
+                                    double roll) const {
+  const Eigen::Vector3d moved =
+      kTick_s * per_second * track_inputs(left_m_per_s, right_m_per_s, pitch, roll);
+  return {moved.x(), moved.y(), moved.z()};
+}
+
+TrackKinematics skid_kinematics(double speed_share, double tread_m) {
+  TrackKinematics kinematics;
+  kinematics.per_second.row(0).head<2>().setConstant(0.5 * speed_share);
+  kinematics.per_second.row(2).head<2>() << -1.0 / tread_m, 1.0 / tread_m;
+  return kinematics;
+}
 
 Support support_at(const HeightField& ground, const SupportGeometry& geometry, double x_m,
                    double y_m, double cos_heading, double sin_heading) {
@@ -91,7 +113,6 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
       InputPreprocessing stages(model.stages, robots_);
       if (!stages.empty()) network.stages.push_back(std::move(stages));
     }
-    bool useful = false;
     for (const ModelChannel& channel : from.outputs) {
       Output output = Output::kDistance;
       if (channel.feature == "forward") output = Output::kForward;
@@ -103,7 +124,6 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
                           "delta_theta, v");
       }
       known.at(output == Output::kDistance ? 0 : static_cast<std::size_t>(output)) = true;
-      useful = true;
       Channel to{static_cast<std::size_t>(output),
                  0.0,
                  0.0,
@@ -122,7 +142,6 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
       }
       network.outputs.push_back(to);
     }
-    if (!useful) continue;
     if (arithmetic == Arithmetic::kFloat && from.trained.empty()) {
       refuse(model, "has no network in floating point");
     }

@@ -1,35 +1,99 @@
-// Robots whose motion a network predicts in place of physics, frame by frame (thesis 6.1), many at
-// once: a row a signal, a column a robot. Knows no motors, no sensors and no firmware.
-//
-// A frame is 10 ms. Pitch and roll come from the height map under the tracks, the network outputs
-// the displacements forward and sideways and the turn, and these move the robot's pose:
-//   x += forward cos(theta + turn/2) - sideways sin(theta + turn/2), y likewise, theta += turn.
-// A robot whose tracks stand stands, whatever the network says.
-// All arithmetic up to the network's outputs is exact, so any number of robots give the same bits
-// one by one and together.
+// Robots that move by a network, or by constants, in place of the physics: track kinematics, the
+// ground under the tracks, and many robots at once.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/standin/planar_pose.h"
 #include "nn/batch/batch_network.h"
-#include "nn/data/motion_signals.h"
+#include "nn/data/features.h"
+#include "nn/data/preprocessing.h"
 #include "nn/model/model_file.h"
-#include "nn/surrogate/input_preprocessing.h"
-#include "nn/surrogate/support.h"
-#include "nn/surrogate/track_kinematics.h"
 
 namespace screed::nn {
+
+/// Forward, sideways and turn of a frame are linear in these.
+enum class TrackInput : std::uint8_t {
+  kLeft,      ///< speed of the left track, m/s
+  kRight,     ///< of the right one
+  kClimb,     ///< magnitude of their mean times the pitch: slip grows uphill
+  kLean,      ///< magnitude of their mean times the roll: what slides down sideways
+  kLeanAhead  ///< their mean, signed, times the roll: turns its nose downhill
+};
+inline constexpr int kTrackInputs = 5;
+
+using TrackInputs = Eigen::Matrix<double, kTrackInputs, 1>;
+/// Speeds in m/s, pitch and roll of the ground in rad, nose and left side up positive.
+TrackInputs track_inputs(double left_m_per_s, double right_m_per_s, double pitch, double roll);
+
+/// Motion from track speeds and the ground's slope by constants, without a state: what anything
+/// that stands in for the physics must beat.
+struct TrackKinematics {
+  Eigen::Matrix<double, 3, kTrackInputs> per_second =
+      Eigen::Matrix<double, 3, kTrackInputs>::Zero();
+
+  FrameMotion motion(double left_m_per_s, double right_m_per_s, double pitch, double roll) const;
+};
+
+/// The robot goes as its tracks do: `speed_share` of their mean speed, and turns as if they were
+/// `tread_m` apart. No slip: 1 and the robot's own tread.
+TrackKinematics skid_kinematics(double speed_share, double tread_m);
+
+/// Where the tracks stand, from the robot's origin; the Rover 5's.
+struct SupportGeometry {
+  double half_length_m = 0.05;   ///< to the support points, ahead and behind
+  double half_tread_m = 0.0635;  ///< to the middle of a track
+  double wheel_radius_m = 0.03;
+};
+
+/// The ground under a robot, from heights alone: pitch and roll as in thesis 6.1, with the four
+/// points under the ends of the tracks in place of one ahead, one behind and one at each side.
+struct Support {
+  double height_m;  ///< mean of the points
+  double pitch;     ///< rad, nose up positive
+  double roll;      ///< rad, left side up positive
+};
+
+/// height(x, y) is the ground's in m.
+template <class Height>
+Support support_on(const Height& height, const SupportGeometry& geometry, double x_m, double y_m,
+                   double cos_heading, double sin_heading) {
+  const double ahead_x = geometry.half_length_m * cos_heading;
+  const double ahead_y = geometry.half_length_m * sin_heading;
+  const double left_x = -geometry.half_tread_m * sin_heading;
+  const double left_y = geometry.half_tread_m * cos_heading;
+  const double front_left = height(x_m + ahead_x + left_x, y_m + ahead_y + left_y);
+  const double front_right = height(x_m + ahead_x - left_x, y_m + ahead_y - left_y);
+  const double rear_left = height(x_m - ahead_x + left_x, y_m - ahead_y + left_y);
+  const double rear_right = height(x_m - ahead_x - left_x, y_m - ahead_y - left_y);
+  const double along = (front_left + front_right) - (rear_left + rear_right);
+  const double across = (front_left + rear_left) - (front_right + rear_right);
+  return {0.25 * ((front_left + rear_left) + (front_right + rear_right)),
+          portable::atan(along / (4.0 * geometry.half_length_m)),
+          portable::atan(across / (4.0 * geometry.half_tread_m))};
+}
 
 Support support_at(const HeightField& ground, const SupportGeometry& geometry, double x_m,
                    double y_m, double cos_heading, double sin_heading);
 
+/// Robots whose motion a network predicts in place of physics, frame by frame (thesis 6.1), many at
+/// once: a row a signal, a column a robot. Knows no motors, no sensors and no firmware.
+///
+/// A frame is 10 ms. Pitch and roll come from the height map under the tracks, the network outputs
+/// the displacements forward and sideways and the turn, and these move the robot's pose:
+///   x += forward cos(theta + turn/2) - sideways sin(theta + turn/2), y likewise, theta += turn.
+/// A robot whose tracks stand stands, whatever the network says.
+/// All arithmetic up to the network's outputs is exact, so any number of robots give the same bits
+/// one by one and together.
 class Surrogate {
  public:
   enum class Arithmetic : std::uint8_t {

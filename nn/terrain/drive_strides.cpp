@@ -1,8 +1,8 @@
-// Strides out of a session.
 #include "nn/terrain/drive_strides.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
@@ -13,6 +13,15 @@
 #include "host_sim/run/simulation/simulation.h"
 
 namespace screed::nn {
+
+std::array<WheelPosition, 4> wheel_positions(const Assembly& robot) {
+  std::array<WheelPosition, 4> positions;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const AssemblyWheel& wheel = robot.wheels[i % 2][i / 2];
+    positions[i] = {wheel.centre.x(), wheel.centre.y(), wheel.radius_m, i < 2};
+  }
+  return positions;
+}
 
 DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_file(run)) {
   if (!session_.has_heights()) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "host_sim/physics/terrain/height_field.h"
-#include "nn/terrain/stride.h"
+#include "nn/terrain/drive_strides.h"
 
 namespace screed::nn {
 

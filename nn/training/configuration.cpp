@@ -162,11 +162,11 @@ TrainingConfiguration configuration_of(const JsonValue& root) {
   if (root.has("run_time")) {
     for (const JsonValue& value : root.at("run_time").list()) {
       const std::string name = value.one_of({"quantise", "exponential", "mean"});
-      if (std::none_of(configuration.stages.begin(), configuration.stages.end(),
-                       [&](const PreprocessingStage& stage) { return stage.stage == name; })) {
-        value.refuse("'" + name + "' is none of the stages");
+      bool there = false;
+      for (PreprocessingStage& stage : configuration.stages) {
+        if (stage.stage == name) stage.run_time = there = true;
       }
-      configuration.run_time.push_back(name);
+      if (!there) value.refuse("'" + name + "' is none of the stages");
     }
   }
   for (const PreprocessingStage& stage : configuration.stages) {

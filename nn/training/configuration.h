@@ -1,5 +1,5 @@
 // A training as a file says it: which sessions, which pre-processing, which networks and how they
-// learn. Knows nothing of how that is done.
+// learn.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "nn/data/preprocessing.h"
+#include "nn/training/trainer.h"
 
 namespace screed::nn {
 
@@ -20,13 +21,6 @@ enum class BatchNormalisation : std::uint8_t {
   kNone,
   kPlain,   ///< mean 0, variance 1 between weights and activation, as tiny-dnn has it
   kScaled,  ///< and a scale and an offset a node that are learned, as Keras has it
-};
-
-enum class OptimiserKind : std::uint8_t { kIrprop, kSgd, kAdam };
-
-enum class Loss : std::uint8_t {
-  kMeanSquare,
-  kLogistic,  ///< outputs are logits (log of the odds), wanted outputs 0 or 1: cross entropy
 };
 
 struct NetworkConfiguration {
@@ -42,7 +36,6 @@ struct NetworkConfiguration {
   Initialisation initialisation = Initialisation::kNormalised;
   double initial_range = 0.05;
   BatchNormalisation batch_normalisation = BatchNormalisation::kNone;
-  Loss loss = Loss::kMeanSquare;
   OptimiserKind optimiser = OptimiserKind::kAdam;
   double learning_rate = 0.001;  ///< not used by iRPROP-
   double final_rate = 1.0;  ///< share of the learning rate in the last epoch; geometric between
@@ -80,7 +73,6 @@ struct TrainingConfiguration {
   std::string choice;
   std::vector<TestSession> test;
   std::vector<PreprocessingStage> stages;
-  std::vector<std::string> run_time;  ///< names of those stages that a running world applies too
   std::vector<NetworkConfiguration> networks;
   std::vector<ThesisFigure> thesis;  ///< to print beside ours
   std::string text;                  ///< of the file

@@ -38,25 +38,6 @@ class CutAtOne : public tiny_dnn::activation::function {
 };
 using Limited = tiny_dnn::linear_layer<CutAtOne>;
 
-/// Cross entropy of logits: log(1 + exp(y)) - t y, whose slope is the logistic function less t.
-class LogisticLoss {
- public:
-  static float f(const vec_t& y, const vec_t& t) {
-    float sum = 0.0F;
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      sum += std::max(y[i], 0.0F) + std::log1p(std::exp(-std::abs(y[i]))) - t[i] * y[i];
-    }
-    return sum / static_cast<float>(y.size());
-  }
-  static vec_t df(const vec_t& y, const vec_t& t) {
-    vec_t slope(y.size());
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      slope[i] = (1.0F / (1.0F + std::exp(-y[i])) - t[i]) / static_cast<float>(y.size());
-    }
-    return slope;
-  }
-};
-
 constexpr float kVarianceFloor = 1e-5F;
 constexpr float kRunningShare = 0.99F;
 constexpr std::size_t kChunkBatches = 64;  ///< that are copied for tiny-dnn at a time
@@ -159,11 +140,9 @@ double learning_rate_of(const NetworkConfiguration& configuration, std::size_t e
                   static_cast<double>(epoch) / static_cast<double>(configuration.epochs - 1));
 }
 
-}  // namespace
-
-class NetworkTrainer::Impl {
+class TinyDnnTrainer : public NetworkTrainer {
  public:
-  Impl(const NetworkConfiguration& configuration, std::uint64_t seed)
+  TinyDnnTrainer(const NetworkConfiguration& configuration, std::uint64_t seed)
       : configuration_(configuration),
         seed_(seed),
         optimiser_(configuration.optimiser, configuration.l2) {
@@ -177,13 +156,15 @@ class NetworkTrainer::Impl {
     }
   }
 
-  bool train_epoch(const Examples& examples, const std::function<bool()>& stop) {
+  bool train_epoch(const Examples& examples, const std::function<bool()>& stop) override {
     const std::optional<TrainerState> before = stop ? std::optional(state()) : std::nullopt;
     optimiser_.learning_rate = learning_rate_of(configuration_, epochs_);
-    std::vector<std::uint32_t> order(examples.rows());
-    std::iota(order.begin(), order.end(), 0U);
+    std::vector<std::uint32_t> order = in_order(examples.rows());
     const std::size_t batch = configuration_.batch == 0 ? order.size() : configuration_.batch;
-    if (configuration_.batch != 0) shuffle(order);
+    if (configuration_.batch != 0) {
+      order = shuffled(order.size(),
+                       {seed_, "order " + configuration_.name() + " " + std::to_string(epochs_)});
+    }
     // A last batch of one cannot be normalised.
     const std::size_t rest = order.size() % batch;
     if (rest == 1 && order.size() > 1) order.pop_back();
@@ -199,7 +180,7 @@ class NetworkTrainer::Impl {
     return true;
   }
 
-  std::vector<float> outputs(const Examples& examples) {
+  std::vector<float> outputs(const Examples& examples) override {
     net_.set_netphase(tiny_dnn::net_phase::test);
     std::vector<float> result;
     for (std::size_t row = 0; row < examples.rows(); ++row) {
@@ -209,25 +190,23 @@ class NetworkTrainer::Impl {
     return result;
   }
 
-  std::vector<std::vector<float>> gradient(const Examples& examples) {
+  std::vector<std::vector<float>> gradient(const Examples& examples) override {
     const TrainerState before = state();
     optimiser_.watching = true;
     optimiser_.seen.assign(optimiser_.states.size(), {});
-    std::vector<std::uint32_t> order(examples.rows());
-    std::iota(order.begin(), order.end(), 0U);
-    fit(examples, order, order.size());
+    fit(examples, in_order(examples.rows()), examples.rows());
     optimiser_.watching = false;
     restore(before);
     return optimiser_.seen;
   }
 
-  std::vector<FloatLayer> folded() const {
+  std::vector<FloatLayer> folded() const override {
     std::vector<FloatLayer> layers;
     for (const Stage& stage : stages_) layers.push_back(folded(stage));
     return layers;
   }
 
-  TrainerState state() const {
+  TrainerState state() const override {
     TrainerState state;
     state.epochs = epochs_;
     state.updates = optimiser_.states;
@@ -243,7 +222,7 @@ class NetworkTrainer::Impl {
     return state;
   }
 
-  void restore(const TrainerState& state) {
+  void restore(const TrainerState& state) override {
     std::size_t next = 0;
     const auto taken = [&](std::size_t size) {
       if (next >= state.parameters.size() || state.parameters[next].size() != size) {
@@ -264,8 +243,6 @@ class NetworkTrainer::Impl {
     optimiser_.states = state.updates;
     epochs_ = state.epochs;
   }
-
-  std::size_t epochs() const { return epochs_; }
 
  private:
   /// A layer of ours: what tiny-dnn has as up to four.
@@ -343,13 +320,10 @@ class NetworkTrainer::Impl {
     return arrays;
   }
 
-  void shuffle(std::vector<std::uint32_t>& order) const {
-    WorldRandom random(seed_, "order " + configuration_.name() + " " + std::to_string(epochs_));
-    for (std::size_t i = order.size(); i > 1; --i) {
-      // 32 random bits for some 10^5 examples: the bias is below 10^-4 and the same everywhere.
-      const auto other = static_cast<std::size_t>((std::uint64_t{random.next()} * i) >> 32U);
-      std::swap(order[i - 1], order[other]);
-    }
+  static std::vector<std::uint32_t> in_order(std::size_t count) {
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0U);
+    return order;
   }
 
   static vec_t row_of(const std::vector<float>& values, std::size_t width, std::size_t row) {
@@ -364,11 +338,7 @@ class NetworkTrainer::Impl {
       in.push_back(row_of(examples.in, examples.inputs, row));
       out.push_back(row_of(examples.out, examples.outputs, row));
     }
-    if (configuration_.loss == Loss::kLogistic) {
-      net_.fit<LogisticLoss>(optimiser_, in, out, batch, 1);
-    } else {
-      net_.fit<tiny_dnn::mse>(optimiser_, in, out, batch, 1);
-    }
+    net_.fit<tiny_dnn::mse>(optimiser_, in, out, batch, 1);
   }
 
   FloatLayer folded(const Stage& stage) const {
@@ -410,32 +380,11 @@ class NetworkTrainer::Impl {
   std::size_t epochs_ = 0;
 };
 
-NetworkTrainer::NetworkTrainer(const NetworkConfiguration& configuration, std::uint64_t seed)
-    : impl_(std::make_unique<Impl>(configuration, seed)) {}
-NetworkTrainer::NetworkTrainer(NetworkTrainer&&) noexcept = default;
-NetworkTrainer& NetworkTrainer::operator=(NetworkTrainer&&) noexcept = default;
-NetworkTrainer::~NetworkTrainer() = default;
+}  // namespace
 
-bool NetworkTrainer::train_epoch(const Examples& examples, const std::function<bool()>& stop) {
-  return impl_->train_epoch(examples, stop);
-}
-std::size_t NetworkTrainer::epochs() const {
-  return impl_->epochs();
-}
-std::vector<FloatLayer> NetworkTrainer::folded() const {
-  return impl_->folded();
-}
-std::vector<float> NetworkTrainer::outputs(const Examples& examples) {
-  return impl_->outputs(examples);
-}
-std::vector<std::vector<float>> NetworkTrainer::gradient(const Examples& examples) {
-  return impl_->gradient(examples);
-}
-TrainerState NetworkTrainer::state() const {
-  return impl_->state();
-}
-void NetworkTrainer::restore(const TrainerState& state) {
-  impl_->restore(state);
+std::unique_ptr<NetworkTrainer> make_network_trainer(const NetworkConfiguration& configuration,
+                                                     std::uint64_t seed) {
+  return std::make_unique<TinyDnnTrainer>(configuration, seed);
 }
 
 }  // namespace screed::nn

@@ -9,7 +9,7 @@
 
 #include "nn/model/quantiser.h"
 #include "nn/training/configuration.h"
-#include "nn/training/parameter_update.h"
+#include "nn/training/trainer.h"
 
 namespace screed::nn {
 
@@ -32,33 +32,28 @@ struct TrainerState {
 
 class NetworkTrainer {
  public:
-  /// The same seed gives the same network and the same course.
-  NetworkTrainer(const NetworkConfiguration& configuration, std::uint64_t seed);
-  NetworkTrainer(NetworkTrainer&&) noexcept;
-  NetworkTrainer& operator=(NetworkTrainer&&) noexcept;
-  ~NetworkTrainer();
+  virtual ~NetworkTrainer() = default;
 
   /// Goes once through the examples, in an order that follows from seed and epoch. Where `stop`,
   /// asked on the way, says so, the state becomes that before the epoch again; false then.
-  bool train_epoch(const Examples& examples, const std::function<bool()>& stop = {});
-  std::size_t epochs() const;
+  virtual bool train_epoch(const Examples& examples, const std::function<bool()>& stop) = 0;
 
   /// What it would give now, as layers of the quantiser: batch normalisation (by its running means)
   /// and steepness are folded into weights and biases.
-  std::vector<FloatLayer> folded() const;
+  virtual std::vector<FloatLayer> folded() const = 0;
   /// tiny-dnn's own outputs for the examples, as it stands when not learning.
-  std::vector<float> outputs(const Examples& examples);
+  virtual std::vector<float> outputs(const Examples& examples) = 0;
   /// Gradient of the mean loss over the examples as one batch, an array a parameter array
   /// in the order of state(); nothing is changed. For tests.
-  std::vector<std::vector<float>> gradient(const Examples& examples);
+  virtual std::vector<std::vector<float>> gradient(const Examples& examples) = 0;
 
-  TrainerState state() const;
+  virtual TrainerState state() const = 0;
   /// Goes on from a state of the same configuration. Throws InputError when it does not fit.
-  void restore(const TrainerState& state);
-
- private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  virtual void restore(const TrainerState& state) = 0;
 };
+
+/// The same seed gives the same network and the same course.
+std::unique_ptr<NetworkTrainer> make_network_trainer(const NetworkConfiguration& configuration,
+                                                     std::uint64_t seed);
 
 }  // namespace screed::nn

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "nn/model/integer_network.h"
+#include "nn/model/quantiser.h"
 #include "nn/training/network_trainer.h"
 
 namespace screed::nn {

@@ -63,12 +63,6 @@ std::string hash_of(const std::vector<FeatureTable>& tables) {
 
 /// What was learned, from a model's file.
 Preprocessing preprocessing_of(const Model& model) {
-  std::vector<PreprocessingStage> stages;
-  std::vector<Bounds> bounds;
-  for (const ModelPreprocessingStage& stage : model.stages) {
-    stages.push_back({stage.stage, stage.feature, stage.low, stage.high, stage.value});
-    if (!stage.feature.empty()) bounds.push_back({stage.feature, stage.low, stage.high});
-  }
   std::vector<FeatureScale> scales;
   const auto add = [&](const std::string& feature, const ModelChannel& channel) {
     if (std::none_of(scales.begin(), scales.end(),
@@ -83,7 +77,7 @@ Preprocessing preprocessing_of(const Model& model) {
           channel);
     }
   }
-  return {std::move(stages), std::move(bounds), std::move(scales)};
+  return Preprocessing(model.stages, std::move(scales));
 }
 
 }  // namespace
@@ -106,8 +100,10 @@ PreparedData prepare(const TrainingConfiguration& configuration, const fs::path&
   }
   data.running = data.training;
   data.preprocessing.learn(data.training, progress);
-  const bool rounds = std::find(configuration.run_time.begin(), configuration.run_time.end(),
-                                "quantise") != configuration.run_time.end();
+  const auto& stages = configuration.stages;
+  const bool rounds = std::any_of(stages.begin(), stages.end(), [](const PreprocessingStage& one) {
+    return one.stage == "quantise" && one.run_time;
+  });
   for (FeatureTable& table : data.running) {
     data.preprocessing.apply(
         table, rounds ? Preprocessing::Extent::kAll : Preprocessing::Extent::kNotRounded);
@@ -144,28 +140,6 @@ Examples examples_of(const std::vector<const FeatureTable*>& tables,
     add(*table, outputs, examples.out);
   }
   return examples;
-}
-
-std::vector<ModelPreprocessingStage> model_preprocessing_stages(
-    const TrainingConfiguration& configuration, const Preprocessing& preprocessing) {
-  std::vector<ModelPreprocessingStage> stages;
-  std::size_t bounds = 0;
-  for (const PreprocessingStage& stage : preprocessing.stages()) {
-    ModelPreprocessingStage learned;
-    learned.stage = stage.stage;
-    if (!stage.feature.empty()) {
-      learned.feature = stage.feature;
-      learned.low = preprocessing.bounds()[bounds].low;
-      learned.high = preprocessing.bounds()[bounds].high;
-      ++bounds;
-    } else {
-      learned.value = stage.value;
-    }
-    learned.run_time = std::find(configuration.run_time.begin(), configuration.run_time.end(),
-                                 stage.stage) != configuration.run_time.end();
-    stages.push_back(learned);
-  }
-  return stages;
 }
 
 }  // namespace screed::nn

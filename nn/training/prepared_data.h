@@ -31,7 +31,7 @@ struct PreparedData {
   std::string hash;                 ///< over the training examples
 };
 
-/// Reads the sessions of the configuration from a folder (nn/data/feature_table.h). Statistics come
+/// Reads the sessions of the configuration from a folder (nn/data/features.h). Statistics come
 /// from the training sessions alone. Throws InputError.
 PreparedData prepare(const TrainingConfiguration& configuration,
                      const std::filesystem::path& sessions, const TaskProgress& progress = {});
@@ -45,10 +45,6 @@ std::vector<TestTable> prepare_tests(const TrainingConfiguration& configuration,
 Examples examples_of(const std::vector<const FeatureTable*>& tables,
                      const std::vector<std::string>& inputs,
                      const std::vector<std::string>& outputs);
-
-/// Stages with what they learned, for the model's file.
-std::vector<ModelPreprocessingStage> model_preprocessing_stages(
-    const TrainingConfiguration& configuration, const Preprocessing& preprocessing);
 
 /// The features that the network's outputs are compared with.
 std::vector<std::string> learned_outputs(const NetworkConfiguration& network);

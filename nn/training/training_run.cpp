@@ -1,15 +1,16 @@
 // Threads share nothing but the progress: each has its network and its examples.
 #include "nn/training/training_run.h"
 
-#include <algorithm>
+#include <cfloat>
 #include <exception>
 #include <mutex>
 #include <thread>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/core/task_progress.h"
-#include "nn/training/checkpoint.h"
 #include "nn/training/predict.h"
 
 namespace screed::nn {
@@ -17,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kCheckpoints = 50;
 constexpr std::size_t kGoldenVectors = 8;
 constexpr std::size_t kRowsToQuantise = 20'000;
 
@@ -51,14 +51,95 @@ std::vector<double> rows_seen(const PreparedData& data, const std::vector<std::s
   return rows;
 }
 
-/// The course of one network.
-class Course {
+// ---- checkpoints: the state of a network's training as JSON, whose numbers read back to the same
+// bits
+
+struct Checkpoint {
+  std::string training;  ///< hash over configuration, seed and data: what it belongs to
+  TrainerState state;
+  TrainedNetwork result;  ///< so far
+};
+
+template <class T>
+std::vector<T> numbers(const JsonValue& list) {
+  std::vector<T> values;
+  for (const JsonValue& value : list.list()) {
+    values.push_back(static_cast<T>(value.number(-DBL_MAX, DBL_MAX)));
+  }
+  return values;
+}
+
+std::size_t count(const JsonValue& value) {
+  return static_cast<std::size_t>(value.integer(0, INT64_MAX));
+}
+
+/// The file appears complete or not at all. Throws RunError when it cannot be written.
+void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
+  Json updates = Json::array();
+  for (const UpdateState& update : checkpoint.state.updates) {
+    updates.push_back(
+        {{"first", update.first}, {"second", update.second}, {"steps", update.steps}});
+  }
+  Json layers = Json::array();
+  for (const FloatLayer& layer : checkpoint.result.layers) {
+    layers.push_back({{"inputs", layer.inputs},
+                      {"outputs", layer.outputs},
+                      {"linear", layer.linear},
+                      {"weights", layer.weights},
+                      {"bias", layer.bias}});
+  }
+  Json losses = Json::array();
+  for (const EpochLoss& loss : checkpoint.result.losses) {
+    losses.push_back({loss.training, loss.choice});
+  }
+  const Json root = {{"format", "screed-training"},
+                     {"training", checkpoint.training},
+                     {"epochs", checkpoint.state.epochs},
+                     {"parameters", checkpoint.state.parameters},
+                     {"updates", updates},
+                     {"kept_epoch", checkpoint.result.kept_epoch},
+                     {"layers", layers},
+                     {"losses", losses}};
+  write_file(file, root.dump() + "\n");
+}
+
+/// Throws InputError, one line with file and place, when it is none.
+Checkpoint read_checkpoint(const std::filesystem::path& file) {
+  const Json json = read_json_file(file);
+  const JsonValue root(json, file.string());
+  root.at("format").one_of({"screed-training"});
+  Checkpoint checkpoint;
+  checkpoint.training = root.at("training").text();
+  checkpoint.state.epochs = count(root.at("epochs"));
+  for (const JsonValue& array : root.at("parameters").list()) {
+    checkpoint.state.parameters.push_back(numbers<float>(array));
+  }
+  for (const JsonValue& update : root.at("updates").list()) {
+    checkpoint.state.updates.push_back({numbers<float>(update.at("first")),
+                                        numbers<float>(update.at("second")),
+                                        count(update.at("steps"))});
+  }
+  checkpoint.result.kept_epoch = count(root.at("kept_epoch"));
+  for (const JsonValue& layer : root.at("layers").list()) {
+    checkpoint.result.layers.push_back(
+        {count(layer.at("inputs")), count(layer.at("outputs")), layer.at("linear").flag(),
+         numbers<double>(layer.at("weights")), numbers<double>(layer.at("bias"))});
+  }
+  for (const JsonValue& loss : root.at("losses").list()) {
+    const std::vector<double> both = numbers<double>(loss);
+    if (both.size() != 2) loss.refuse("allowed are two errors");
+    checkpoint.result.losses.push_back({both[0], both[1]});
+  }
+  return checkpoint;
+}
+
+// ---- one network
+
+class Course : public Trainer {
  public:
   Course(const TrainingConfiguration& configuration, const PreparedData& data,
          const NetworkConfiguration& network, const TrainingOptions& options)
-      : network_(network),
-        options_(options),
-        trainer_(network, configuration.seed),
+      : network_(make_network_trainer(network, configuration.seed)),
         identity_(identity(configuration, data, network)) {
     std::vector<const FeatureTable*> tables;
     for (const FeatureTable& table : data.training) tables.push_back(&table);
@@ -70,47 +151,23 @@ class Course {
     }
   }
 
-  bool done() const {
-    const std::size_t epochs = result_.losses.size();
-    return epochs >= network_.epochs ||
-           (network_.patience > 0 && epochs - std::min(epochs, best_epoch_) >= network_.patience);
+  std::optional<EpochLoss> train_epoch(std::size_t /*epoch*/,
+                                       const std::function<bool()>& stop) override {
+    if (!network_->train_epoch(training_, stop)) return std::nullopt;
+    layers_ = network_->folded();
+    return EpochLoss{loss_of(layers_, training_), loss_of(layers_, choice_)};
   }
 
-  /// One epoch; says what is new. Nothing: it was stopped.
-  std::optional<std::string> step() {
-    const auto stop = [this] { return options_.stop != nullptr && options_.stop->load(); };
-    if (!trainer_.train_epoch(training_, stop)) return std::nullopt;
-    std::vector<FloatLayer> layers = trainer_.folded();
-    result_.losses.push_back({loss_of(layers, training_), loss_of(layers, choice_)});
-    const std::size_t epoch = result_.losses.size();
-    const bool better = result_.losses.back().choice < best_loss_;
-    if (better) {
-      best_loss_ = result_.losses.back().choice;
-      best_epoch_ = epoch;
-    }
-    if (better || !network_.keep_best) {
-      result_.layers = std::move(layers);
-      result_.kept_epoch = epoch;
-    }
-    const std::size_t interval = std::max<std::size_t>(1, network_.epochs / kCheckpoints);
-    if (file_ && (epoch % interval == 0 || done())) save();
-    char note[160];
-    std::snprintf(note, sizeof note, "%s: epoch %zu, error %.5f, on the choice %.5f",
-                  network_.name().c_str(), epoch, result_.losses.back().training,
-                  result_.losses.back().choice);
-    return std::string(note);
+  void keep() override {
+    result.layers = layers_;
+    result.kept_epoch = result.losses.size();
   }
 
-  void save() const {
-    if (file_) write_checkpoint(*file_, {identity_, trainer_.state(), result_});
+  void checkpoint() override {
+    if (file_) write_checkpoint(*file_, {identity_, network_->state(), result});
   }
 
-  double share() const {
-    return done()
-               ? 1.0
-               : static_cast<double>(result_.losses.size()) / static_cast<double>(network_.epochs);
-  }
-  TrainedNetwork take_result() { return std::move(result_); }
+  TrainedNetwork result;  ///< so far; run_training() adds the losses
 
  private:
   void resume() {
@@ -120,26 +177,16 @@ class Course {
                        ": is of another training (configuration, seed, epochs or sessions "
                        "differ); remove it, or leave out --resume");
     }
-    trainer_.restore(checkpoint.state);
-    result_ = std::move(checkpoint.result);
-    for (std::size_t i = 0; i < result_.losses.size(); ++i) {
-      if (result_.losses[i].choice < best_loss_) {
-        best_loss_ = result_.losses[i].choice;
-        best_epoch_ = i + 1;
-      }
-    }
+    network_->restore(checkpoint.state);
+    result = std::move(checkpoint.result);
   }
 
-  const NetworkConfiguration& network_;
-  const TrainingOptions& options_;
-  NetworkTrainer trainer_;
+  std::unique_ptr<NetworkTrainer> network_;
   std::string identity_;
   Examples training_;
   Examples choice_;
   std::optional<fs::path> file_;
-  TrainedNetwork result_;
-  double best_loss_ = 1e300;
-  std::size_t best_epoch_ = 0;
+  std::vector<FloatLayer> layers_;  ///< after the last epoch
 };
 
 }  // namespace
@@ -154,23 +201,29 @@ std::vector<TrainedNetwork> train(const TrainingConfiguration& configuration,
   std::mutex mutex;
   std::vector<double> shares(courses.size());
   std::exception_ptr failure;
+  std::atomic<bool> failed = false;
   const auto stopped = [&] { return options.stop != nullptr && options.stop->load(); };
   const auto work = [&](std::size_t i) {
+    const NetworkConfiguration& network = configuration.networks[i];
+    TrainingPlan plan{network.epochs, network.patience, network.keep_best, {}, {}};
+    plan.stop = [&] { return stopped() || failed; };
+    plan.progress = [&](const std::vector<EpochLoss>& losses, double share) {
+      const std::lock_guard lock(mutex);
+      shares[i] = share;
+      double sum = 0.0;
+      for (const double one : shares) sum += one;
+      char note[160];
+      std::snprintf(note, sizeof note, "%s: epoch %zu, error %.5f, on the choice %.5f",
+                    network.name().c_str(), losses.size(), losses.back().training,
+                    losses.back().choice);
+      if (options.progress) options.progress(sum / static_cast<double>(shares.size()), note);
+    };
     try {
-      while (!courses[i].done() && !stopped()) {
-        const std::optional<std::string> note = courses[i].step();
-        if (!note.has_value()) break;
-        const std::lock_guard lock(mutex);
-        if (failure) return;
-        shares[i] = courses[i].share();
-        double sum = 0.0;
-        for (const double share : shares) sum += share;
-        if (options.progress) options.progress(sum / static_cast<double>(shares.size()), *note);
-      }
-      if (stopped()) courses[i].save();
+      run_training(courses[i], plan, courses[i].result.losses);
     } catch (...) {
       const std::lock_guard lock(mutex);
       failure = std::current_exception();
+      failed = true;
     }
   };
   std::vector<std::thread> threads;
@@ -181,7 +234,7 @@ std::vector<TrainedNetwork> train(const TrainingConfiguration& configuration,
   if (stopped()) throw TaskStopped("training; --resume goes on from the checkpoints");
   std::vector<TrainedNetwork> results;
   results.reserve(courses.size());
-  for (Course& course : courses) results.push_back(course.take_result());
+  for (Course& course : courses) results.push_back(std::move(course.result));
   return results;
 }
 
@@ -192,7 +245,7 @@ Model make_model(const TrainingConfiguration& configuration, const PreparedData&
   model.description = configuration.about;
   model.seed = configuration.seed;
   model.training_data = data.hash;
-  model.stages = model_preprocessing_stages(configuration, data.preprocessing);
+  model.stages = data.preprocessing.stages();
   for (std::size_t i = 0; i < networks.size(); ++i) {
     const NetworkConfiguration& network = configuration.networks[i];
     const auto channel = [&](const std::string& feature, const std::string& learned) {

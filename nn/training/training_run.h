@@ -13,16 +13,11 @@
 
 namespace screed::nn {
 
-/// Mean squared errors after an epoch.
-struct EpochLoss {
-  double training = 0.0;
-  double choice = 0.0;  ///< on the session of the choice, as trained
-};
-
 struct TrainedNetwork {
   std::vector<FloatLayer> layers;  ///< of the epoch that is kept
   std::size_t kept_epoch = 0;      ///< counts from 1
-  std::vector<EpochLoss> losses;   ///< an epoch each
+  /// An epoch each: mean squared errors, the choice's on its session as trained.
+  std::vector<EpochLoss> losses;
 };
 
 struct TrainingOptions {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "host_sim/core/constants.h"
-#include "host_sim/soil_validation/wheel_limit.h"
+#include "host_sim/soil_validation/wheel_testbed.h"
 #include "tests/sitl/test_drive.h"
 #include "tests/step_one.h"
 

@@ -91,8 +91,7 @@ $(B)/tiny_dnn/third_party/stb:
 	@ln -sfn "$$(pkg-config --variable=includedir stb)" $@
 # Large matrices on which no world's bits depend: Eigen with its vector code, by another name, since a linker takes one
 # of two that are called alike.
-VECTOR_SOURCES := nn/training/predict.cpp nn/terrain/flux_trainer.cpp nn/terrain/window_network.cpp \
-  tools/bench/speed/network_bench.cpp
+VECTOR_SOURCES := nn/training/predict.cpp nn/terrain/terrain_trainer.cpp tools/bench/speed/network_bench.cpp
 $(call objects,$(VECTOR_SOURCES)): EXTRA_FLAGS += -UEIGEN_DONT_VECTORIZE -DEigen=EigenVectorised
 RSVG_FLAGS = $(shell $(call package_flags,librsvg-2.0))
 RSVG_SOURCES := host_sim/render/chart/svg_png.cpp

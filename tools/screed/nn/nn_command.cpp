@@ -11,7 +11,7 @@
 #include "host_sim/core/random.h"
 #include "nn/batch/batch_network.h"
 #include "nn/data/features.h"
-#include "nn/model/header_export.h"
+#include "nn/model/model_file.h"
 #include "nn/training/evaluation.h"
 #include "nn/training/training_run.h"
 #include "tools/screed/cli/interrupt.h"
@@ -103,9 +103,9 @@ int run_preprocess(const NnArguments& arguments) {
   for (const nn::FeatureScale& scale : data.preprocessing.scales()) {
     std::printf("%-24s %14.6g %14.6g\n", scale.feature.c_str(), scale.middle, scale.half_range);
   }
-  for (const nn::Bounds& bounds : data.preprocessing.bounds()) {
-    std::printf("%-24s stays within %.6g and %.6g\n", bounds.feature.c_str(), bounds.low,
-                bounds.high);
+  for (const nn::PreprocessingStage& stage : data.preprocessing.stages()) {
+    if (stage.feature.empty()) continue;
+    std::printf("%-24s stays within %.6g and %.6g\n", stage.feature.c_str(), stage.low, stage.high);
   }
   std::printf("training data %s\ntables in %s\n", data.hash.c_str(), folder.c_str());
   return 0;

@@ -1,8 +1,6 @@
 // `screed nn escape`: how often the robot gets itself out of traps, against an oracle.
 #include <algorithm>
-#include <atomic>
 #include <cstdio>
-#include <exception>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -13,6 +11,7 @@
 #include "host_sim/core/json.h"
 #include "host_sim/core/statistics.h"
 #include "nn/slip/escape_run.h"
+#include "nn/slip/slip_drive.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
@@ -165,33 +164,17 @@ std::vector<nn::EscapeResult> run_trials(const EscapeArguments& arguments) {
   TaskBar bar(arguments.quiet, "getting out: ");
   const TaskProgress progress = bar.progress();
   std::vector<nn::EscapeResult> results(arguments.runs);
-  std::atomic<std::size_t> next = 0;
   std::size_t done = 0;
   std::mutex mutex;
-  std::exception_ptr failure;
   const TaskProgress show = [&](std::string_view task, double /*of_one*/) {
     const std::scoped_lock lock(mutex);
     report_progress(progress, task, done, arguments.runs);
   };
-  const auto work = [&] {
-    try {
-      for (std::size_t i = next++; i < arguments.runs; i = next++) {
-        results[i] =
-            nn::escape_trials(arguments.seed + i, {arguments.all, !arguments.no_oracle}, show);
-        const std::scoped_lock lock(mutex);
-        ++done;
-      }
-    } catch (...) {
-      const std::scoped_lock lock(mutex);
-      failure = std::current_exception();
-      next = arguments.runs;
-    }
-  };
-  std::vector<std::jthread> others;
-  for (unsigned i = 1; i < arguments.threads; ++i) others.emplace_back(work);
-  work();
-  others.clear();  // joins
-  if (failure) std::rethrow_exception(failure);
+  nn::in_threads(arguments.runs, arguments.threads, [&](std::size_t i) {
+    results[i] = nn::escape_trials(arguments.seed + i, {arguments.all, !arguments.no_oracle}, show);
+    const std::scoped_lock lock(mutex);
+    ++done;
+  });
   return results;
 }
 

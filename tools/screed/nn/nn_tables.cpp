@@ -101,7 +101,7 @@ std::string model_description(const nn::Model& model) {
   std::string text =
       line("%s: %s\nseed %llu, training data %s\n", model.name.c_str(), model.description.c_str(),
            static_cast<unsigned long long>(model.seed), model.training_data.c_str());
-  for (const nn::ModelPreprocessingStage& stage : model.stages) {
+  for (const nn::PreprocessingStage& stage : model.stages) {
     text += "stage " + stage.stage;
     if (!stage.feature.empty()) {
       text += line(" %s %.6g to %.6g", stage.feature.c_str(), stage.low, stage.high);

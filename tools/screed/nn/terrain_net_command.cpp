@@ -12,11 +12,9 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/render/picture/canvas.h"
 #include "host_sim/render/picture/map_frame.h"
-#include "nn/terrain/flux_network.h"
-#include "nn/terrain/flux_trainer.h"
 #include "nn/terrain/terrain_comparison.h"
 #include "nn/terrain/terrain_network.h"
-#include "nn/terrain/window_network.h"
+#include "nn/terrain/terrain_trainer.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
@@ -49,7 +47,7 @@ struct CompareOptions {
 };
 
 void print_epoch(std::size_t epoch, double mse_mm2) {
-  std::cerr << "epoch " << epoch + 1 << ": " << mse_mm2 << " mm^2\n";
+  std::cerr << "epoch " << epoch << ": " << mse_mm2 << " mm^2\n";
 }
 
 /// The thesis' network, reduced, on every stride.
@@ -60,7 +58,7 @@ int train_window(const TrainOptions& options) {
     drives.push_back(std::make_unique<nn::DriveStrides>(run));
     pointers.push_back(drives.back().get());
   }
-  nn::WindowNetwork(pointers, options.epochs, options.seed, print_epoch).write(options.out);
+  nn::train_window(pointers, options.epochs, options.seed, print_epoch).write(options.out);
   std::cout << options.out << "\n";
   return 0;
 }

@@ -1,4 +1,5 @@
 // `screed soil dig`: a tracked robot digs, on deformable soil and on particles.
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -9,13 +10,12 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
-#include "tools/screed/soil/soil_common.h"
+#include "tools/screed/soil/soil_command.h"
 
 namespace screed {
 namespace {
 
-struct DigArguments {
-  SoilArguments common;
+struct DigArguments : SoilArguments {
   DigTest test;
   std::string manoeuvre = "spin";
   std::string ground = "scm";
@@ -64,15 +64,12 @@ double fit_drag_depth(DigTest test, double raised_m3, const TaskProgress& progre
   return best;
 }
 
-int run_dig(DigArguments a) {
+SoilReport run_dig(DigArguments a) {
   a.test.manoeuvre = manoeuvre_named(a.manoeuvre);
   if (a.ground != "scm" && a.ground != "particles") {
     throw InputError("dig: ground = " + a.ground + "; allowed is scm or particles");
   }
-  a.test.soil = a.common.soil();
-  a.test.options = a.common.options();
-  a.test.cell_m = a.common.cell_m;
-  a.test.step_s = a.common.step_s;
+  a.set(a.test);
   std::vector<SoilLine> lines;
   TaskBar bar(false);
   if (a.fit_cm3 > 0.0) {
@@ -118,30 +115,31 @@ int run_dig(DigArguments a) {
   add("turned_deg", result.turned_rad * kDegrees, "%.1f");
   add("lower_by_mm", result.lower_by_m * kMilli, "%.2f");
   add("pitch_deg", result.pitch_rad * kDegrees, "%.2f");
-  if (!a.common.charts.empty()) {
+  if (!a.charts.empty()) {
     PictureOptions picture;
     picture.width_px = 800;
     picture.height_px = 700;
     picture.title = a.manoeuvre + (particles ? ", particles" : ", soil");
     const std::string file = "soil_dig_" + a.manoeuvre + "_" + a.ground + ".png";
-    write_difference_picture(a.common.chart(file.c_str()), result.before, result.after, picture);
+    write_difference_picture(a.chart(file.c_str()), result.before, result.after, picture);
   }
-  return finish(a.common, "dig",
-                (particles ? text("particles of radius %g mm", a.test.particle.radius_m * kMilli)
-                           : a.test.soil.name) +
-                    text(", grid %g mm", a.common.cell_m * kMilli),
-                "must be", lines);
+  return {"dig",
+          (particles ? text("particles of radius %g mm", a.test.particle.radius_m * kMilli)
+                     : a.test.soil.name) +
+              text(", grid %g mm", a.cell_m * kMilli),
+          "must be", lines};
 }
 
 }  // namespace
 
 void register_soil_dig_command(Command& soil, Program& program) {
   const auto a = std::make_shared<DigArguments>();
-  Command* command = soil.add_subcommand(
-      "dig", "Let a tracked robot dig: moved volume, depth, distribution of the material");
-  a->common.bulldozing = a->common.avalanches = true;
-  a->common.preset = "gravel";
-  add_soil_options(*command, a->common, {.cell_m = {0.001, 0.02}, .step_s = {1e-5, 0.01}});
+  a->bulldozing = a->avalanches = true;
+  a->preset = "gravel";
+  Command* command =
+      add_soil_test(soil, program, "dig",
+                    "Let a tracked robot dig: moved volume, depth, distribution of the material", a,
+                    run_dig, {.cell_m = {0.001, 0.02}, .step_s = {1e-5, 0.01}});
   a->test.particle.radius_m = 0.0075;
   command
       ->add_option("--manoeuvre", a->manoeuvre,
@@ -171,9 +169,8 @@ void register_soil_dig_command(Command& soil, Program& program) {
              {1, 256});
   add_number(*command, "--fit-raised", a->fit_cm3,
              "Fit --drag-depth to this raised volume [cm^3] (scm)", {0.0, 1e6});
-  command->add_option("--charts", a->common.charts, "Output folder for a PNG of the height change")
+  command->add_option("--charts", a->charts, "Output folder for a PNG of the height change")
       ->type_name("FOLDER");
-  command->callback([a, &program] { program.action = [a] { return run_dig(*a); }; });
 }
 
 }  // namespace screed

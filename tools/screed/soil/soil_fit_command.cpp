@@ -12,7 +12,7 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
-#include "tools/screed/soil/soil_common.h"
+#include "tools/screed/soil/soil_command.h"
 
 namespace screed {
 namespace {

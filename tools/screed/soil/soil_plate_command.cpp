@@ -1,4 +1,6 @@
-// `screed soil plate`: pressure of a plate beside Bekker's law.
+// `screed soil plate`: pressure of a plate beside Bekker's law. `screed soil match`: what soil a
+// bed of particles is like.
+
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -6,6 +8,7 @@
 #include <numbers>
 
 #include "host_sim/core/constants.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/random.h"
 #include "host_sim/render/chart/line_chart.h"
 #include "host_sim/soil_validation/check_range.h"
@@ -13,13 +16,13 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
-#include "tools/screed/soil/soil_common.h"
+#include "tools/screed/cli/task_bar.h"
+#include "tools/screed/soil/soil_command.h"
 
 namespace screed {
 namespace {
 
-struct PlateArguments {
-  SoilArguments common;
+struct PlateArguments : SoilArguments {
   PlateTest test;
   double yaw_deg = 0.0;
   double depth_m = 0.02;
@@ -34,8 +37,7 @@ constexpr double kPlateDepths_m[] = {0.001, 0.002, 0.005, 0.01, 0.015, 0.02};
 /// (docs/studies/soil.md).
 std::optional<double> peer_pressure(const PlateArguments& a, double depth_m) {
   const PlateTest& t = a.test;
-  if (!a.common.as_peer() || a.common.cell_m != 0.005 || t.round || t.length_m != 0.05 ||
-      t.width_m != 0.05) {
+  if (!a.as_peer() || a.cell_m != 0.005 || t.round || t.length_m != 0.05 || t.width_m != 0.05) {
     return std::nullopt;
   }
   constexpr std::pair<double, double> kExcess[] = {
@@ -50,7 +52,7 @@ std::optional<double> peer_pressure(const PlateArguments& a, double depth_m) {
 
 void chart_plate(const PlateArguments& a, const std::vector<PlatePoint>& run) {
   Chart chart;
-  chart.title = "A plate in " + a.common.soil().name + ", pressure and depth";
+  chart.title = "A plate in " + a.soil().name + ", pressure and depth";
   chart.x_label = "depth [mm]";
   chart.y_label = "pressure [kPa]";
   ChartSeries engine{.label = "Screed", .points = {}, .markers = false};
@@ -67,18 +69,14 @@ void chart_plate(const PlateArguments& a, const std::vector<PlatePoint>& run) {
   }
   chart.series = {engine, closed};
   if (!peer.points.empty()) chart.series.push_back(peer);
-  write_chart(a.common.chart("soil_plate.svg"), chart);
+  write_chart(a.chart("soil_plate.svg"), chart);
 }
 
-int run_plate(PlateArguments a) {
-  a.test.soil = a.common.soil();
-  a.test.options = a.common.options();
-  a.test.cell_m = a.common.cell_m;
-  a.test.step_s = a.common.step_s;
+SoilReport run_plate(PlateArguments a) {
+  a.set(a.test);
   a.test.yaw_rad = a.yaw_deg * kDegree;
   a.test.depths_m = {a.depth_m};
   if (a.lift_m > 0.0) a.test.depths_m.push_back(a.depth_m - a.lift_m);
-  check_range("plate", "offsets", a.offsets, 0, 10000);
   const std::vector<PlatePoint> run = press_plate(a.test);
   std::vector<SoilLine> lines;
   std::vector<double> depths;
@@ -112,8 +110,8 @@ int run_plate(PlateArguments a) {
       for (int i = 0; i < a.offsets; ++i) {
         bar.show_share((turned ? 0.5 : 0.0) + 0.5 * i / a.offsets, "pressing a plate");
         PlateTest test = a.test;
-        test.offset_x_m = a.common.cell_m * random.uniform();
-        test.offset_y_m = a.common.cell_m * random.uniform();
+        test.offset_x_m = a.cell_m * random.uniform();
+        test.offset_y_m = a.cell_m * random.uniform();
         if (turned) test.yaw_rad = random.uniform(0.0, std::numbers::pi);
         for (const PlatePoint& point : press_plate(test)) {
           if (point.depth_m < 1e-3 || point.depth_m > a.depth_m) continue;
@@ -129,22 +127,19 @@ int run_plate(PlateArguments a) {
     }
     bar.clear();
   }
-  if (!a.common.charts.empty()) chart_plate(a, run);
+  if (!a.charts.empty()) chart_plate(a, run);
   const std::string shape = a.test.round ? text("disc of %g mm", a.test.length_m * kMilli)
                                          : text("plate of %g", a.test.length_m * kMilli) +
                                                text(" x %g mm", a.test.width_m * kMilli);
-  return finish(a.common, "plate",
-                a.test.soil.name + ", " + shape + text(", grid %g mm", a.common.cell_m * kMilli),
-                "Bekker", lines);
+  return {"plate", a.test.soil.name + ", " + shape + text(", grid %g mm", a.cell_m * kMilli),
+          "Bekker", lines};
 }
 
-}  // namespace
-
-void register_soil_plate_command(Command& soil, Program& program) {
+void add_plate(Command& soil, Program& program) {
   const auto a = std::make_shared<PlateArguments>();
   Command* command =
-      soil.add_subcommand("plate", "Press a plate into soil and compare with Bekker's law");
-  add_soil_options(*command, a->common, {.step_s = {1e-5, 0.1}});
+      add_soil_test(soil, program, "plate", "Press a plate into soil and compare with Bekker's law",
+                    a, run_plate, {.step_s = {1e-5, 0.1}});
   command->add_flag("--round", a->test.round, "Press a disc; --length is its diameter");
   add_number(*command, "--length", a->test.length_m, "Length of the plate [m]", {0.005, 1.0});
   add_number(*command, "--width", a->test.width_m, "Width of the plate [m]", {0.005, 1.0});
@@ -160,9 +155,70 @@ void register_soil_plate_command(Command& soil, Program& program) {
   add_number(*command, "--offsets", a->offsets,
              "Number of random positions and yaws to find the worst error over", {0, 10000});
   add_number(*command, "--seed", a->seed, "Seed of the random positions", kSeedRange);
-  command->add_option("--charts", a->common.charts, "Output folder for soil_plate.svg")
+  command->add_option("--charts", a->charts, "Output folder for soil_plate.svg")
       ->type_name("FOLDER");
-  command->callback([a, &program] { program.action = [a] { return run_plate(*a); }; });
+}
+
+// ---- match
+
+struct MatchArguments : SoilArguments {
+  ParticlePlateTest test;
+};
+
+SoilReport run_match(MatchArguments a) {
+  const SoilParameters soil = a.soil();
+  std::vector<SoilLine> lines;
+  TaskBar bar(false);
+  for (const ParticlePlatePoint& point : press_particles(a.test, bar.progress())) {
+    const std::string where = text("plate, %g kPa", point.pressure_pa / kMilli);
+    const double bekker = soil.k_c / std::min(a.test.length_m, a.test.width_m) + soil.k_phi;
+    const double depth = portable::pow(point.pressure_pa / bekker, 1.0 / soil.exponent);
+    lines.push_back({where, "depth_mm", point.depth_m() * kMilli, "%.2f",
+                     std::max(depth, point.pressure_pa / soil.elastic_pa_per_m) * kMilli,
+                     SoilLine::Error::kRelative});
+    lines.push_back({where, "rut_mm", point.rut_m * kMilli, "%.2f",
+                     std::max(0.0, depth - point.pressure_pa / soil.elastic_pa_per_m) * kMilli,
+                     SoilLine::Error::kNone});
+    lines.push_back({where, "raised_cm3", point.raised_m3 * 1e6, "%.1f"});
+    lines.push_back({where, "stiffness_pa_per_m", point.stiffness_pa_per_m, "%.3g",
+                     soil.elastic_pa_per_m, SoilLine::Error::kNone});
+  }
+  const ParticleDrag drag = drag_over_particles(a.test, bar.progress());
+  bar.clear();
+  constexpr double kDegrees = 57.29577951308232;
+  lines.push_back({"block", "friction_deg", portable::atan(drag.friction) * kDegrees, "%.1f",
+                   soil.friction_deg, SoilLine::Error::kNone});
+  lines.push_back({"block", "shear_modulus_mm", drag.shear_displacement_m * kMilli, "%.2f",
+                   soil.shear_modulus_m * kMilli, SoilLine::Error::kNone});
+  return {"match",
+          text("particles of radius %g mm beside ", a.test.particle.radius_m * kMilli) + soil.name,
+          soil.name, lines};
+}
+
+void add_match(Command& soil, Program& program) {
+  const auto a = std::make_shared<MatchArguments>();
+  a->preset = "gravel";
+  Command* command = add_soil_test(
+      soil, program, "match",
+      "Identify the soil parameters of a particle bed: press a plate, drag a block", a, run_match);
+  a->test.particle.radius_m = 0.0075;
+  add_number(*command, "--particle-radius", a->test.particle.radius_m, "Particle radius [m]",
+             {0.002, 0.1});
+  add_number(*command, "--particle-friction", a->test.particle.friction,
+             "Friction coefficient of the particles", {0.0, 2.0});
+  add_number(*command, "--depth", a->test.depth_m, "Depth of the particle bed [m]", {0.02, 1.0});
+  add_number(*command, "--length", a->test.length_m, "Length of plate and block [m]", {0.02, 0.3});
+  add_number(*command, "--width", a->test.width_m, "Width of plate and block [m]", {0.02, 0.3});
+  add_number(*command, "--load", a->test.load_pa, "Pressure below the block [Pa]", {100.0, 1e5});
+  add_number(*command, "--seed", a->test.seed, "Seed of the particle layout", kSeedRange);
+  add_number(*command, "--beds", a->test.beds, "Number of particle beds to average over", {1, 64});
+}
+
+}  // namespace
+
+void register_soil_plate_command(Command& soil, Program& program) {
+  add_match(soil, program);
+  add_plate(soil, program);
 }
 
 }  // namespace screed

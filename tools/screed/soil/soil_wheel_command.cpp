@@ -1,4 +1,5 @@
 // `screed soil wheel`: a wheel beside its limit and beside measurements; the limit alone.
+
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -12,18 +13,18 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
-#include "tools/screed/soil/soil_common.h"
+#include "tools/screed/soil/soil_command.h"
 #include "tools/screed/soil/wheel_charts.h"
 
 namespace screed {
 namespace {
 
-struct WheelArguments {
-  SoilArguments common;
+struct WheelArguments : SoilArguments {
   WheelTest test;
   double yaw_deg = 0.0;
   std::vector<double> slips = {0.0, 0.2, 0.4};
   std::string measured;
+  const Option* measured_option = nullptr;
   std::string cases = "ding2011_smooth";
   std::vector<double> slip_angles_deg = {0.0};
   bool limit_only = false;
@@ -39,7 +40,7 @@ struct PeerWheel {
 constexpr PeerWheel kPeerDing[] = {{0.1, 11.2}, {0.2, 23.9}, {0.3, 33.8}, {0.4, 41.2}, {0.6, 49.2}};
 
 void write_charts(const WheelArguments& a, const std::vector<WheelChart>& charts) {
-  for (const WheelChart& one : charts) write_chart(a.common.chart(one.file.c_str()), one.chart);
+  for (const WheelChart& one : charts) write_chart(a.chart(one.file.c_str()), one.chart);
 }
 
 std::string wheel_text(const RollingWheel& wheel) {
@@ -48,11 +49,11 @@ std::string wheel_text(const RollingWheel& wheel) {
 }
 
 std::string wheel_words(const WheelArguments& a) {
-  return a.common.soil().name + ", " + wheel_text(a.test.wheel) +
-         (a.limit_only ? ", limit of an infinitely fine grid"
-                       : text(", grid %g mm", a.common.cell_m * kMilli) +
-                             text(", step %g ms", a.common.step_s * kMilli)) +
-         ", normal stress " + a.common.normal_stress;
+  return a.soil().name + ", " + wheel_text(a.test.wheel) +
+         (a.limit_only
+              ? ", limit of an infinitely fine grid"
+              : text(", grid %g mm", a.cell_m * kMilli) + text(", step %g ms", a.step_s * kMilli)) +
+         ", normal stress " + a.normal_stress;
 }
 
 std::string where_of(const RollingWheel& wheel, bool with_angle) {
@@ -79,14 +80,14 @@ MeasuredWheel computed_row(const MeasuredWheel& row, const WheelReaction& comput
   return out;
 }
 
-int run_measured(WheelArguments a) {
+SoilReport run_measured(WheelArguments a) {
   const std::vector<MeasuredWheel> rows = read_soil_measurements(a.measured, a.cases).wheels;
   const NormalStress stress = a.test.options.normal_stress;
   const RollingWheel rim = a.test.wheel;
   std::vector<SoilLine> lines;
   WheelComparison comparison;
   comparison.cases = a.cases;
-  comparison.subtitle = (a.cases.empty() ? "" : a.cases + " on ") + a.common.soil().name;
+  comparison.subtitle = (a.cases.empty() ? "" : a.cases + " on ") + a.soil().name;
   comparison.measured = rows;
   ProgressBar bar(std::cerr);
   for (const MeasuredWheel& row : rows) {
@@ -121,8 +122,8 @@ int run_measured(WheelArguments a) {
     comparison.limit.push_back(computed_row(row, limit));
   }
   bar.clear();
-  if (!a.common.charts.empty()) write_charts(a, measured_charts(comparison));
-  return finish(a.common, "wheel", wheel_words(a), "measured", lines);
+  if (!a.charts.empty()) write_charts(a, measured_charts(comparison));
+  return {"wheel", wheel_words(a), "measured", lines};
 }
 
 /// Lines of one pass of a wheel beside its limit.
@@ -130,7 +131,7 @@ void add_lines(std::vector<SoilLine>& lines, const WheelArguments& a, const std:
                const WheelPass& pass, const WheelReaction& limit) {
   // The limit is that of soil that stays where it is.
   const auto unmoved = [&](double value) {
-    return a.common.bulldozing ? std::nullopt : std::optional(value);
+    return a.bulldozing ? std::nullopt : std::optional(value);
   };
   lines.push_back({where, "sinkage_mm", pass.sinkage_m * kMilli, "%.4f",
                    unmoved(limit.sinkage_m * kMilli), SoilLine::Error::kRelative});
@@ -190,15 +191,17 @@ FirstPass roll(const WheelArguments& a, const std::string& place, std::vector<So
   return first;
 }
 
-int run_wheel_command(WheelArguments a) {
-  a.test.soil = a.common.soil();
-  a.test.options = a.common.options();
-  a.test.cell_m = a.common.cell_m;
-  a.test.step_s = a.common.step_s;
+SoilReport run_wheel_command(WheelArguments a) {
+  a.set(a.test);
   a.test.yaw_rad = a.yaw_deg * kDegree;
   a.test.wheel.friction = a.rim_friction_deg >= 90.0 ? std::numeric_limits<double>::infinity()
                                                      : portable::tan(a.rim_friction_deg * kDegree);
-  if (!a.measured.empty()) return run_measured(a);
+  if (a.measured_option->given()) {
+    if (a.measured.empty()) {
+      a.measured = (data_folders().data / "soil" / "single_wheel_ding2011.csv").string();
+    }
+    return run_measured(a);
+  }
   const bool several = a.slip_angles_deg.size() > 1;
   const auto runs = static_cast<double>(a.slip_angles_deg.size() * a.slips.size());
   int done = 0;
@@ -223,28 +226,28 @@ int run_wheel_command(WheelArguments a) {
     curves.push_back(limit);
   }
   bar.clear();
-  if (!a.common.charts.empty()) {
+  if (!a.charts.empty()) {
     WheelSweep sweep;
     const bool radial = a.test.options.normal_stress == NormalStress::kRadial;
     sweep.prefix = a.limit_only ? "limit" : radial ? "wheel_radial" : "wheel_vertical";
-    sweep.subject = a.common.soil().name + ", normal stress " + a.common.normal_stress;
+    sweep.subject = a.soil().name + ", normal stress " + a.normal_stress;
     if (a.limit_only) sweep.subtitle = wheel_text(a.test.wheel);
     sweep.curves = curves;
     sweep.with_side_force = sideways;
     write_charts(a, wheel_charts(sweep));
   }
-  return a.limit_only ? finish(a.common, "wheel_limit", wheel_words(a), "", lines)
-                      : finish(a.common, "wheel", wheel_words(a), "limit", lines);
+  return {a.limit_only ? "wheel_limit" : "wheel", wheel_words(a), a.limit_only ? "" : "limit",
+          lines};
 }
 
 }  // namespace
 
 void register_soil_wheel_command(Command& soil, Program& program) {
   const auto a = std::make_shared<WheelArguments>();
-  Command* command = soil.add_subcommand(
-      "wheel",
-      "Roll a wheel at imposed slip and compare with the limit of an infinitely fine grid");
-  add_soil_options(*command, a->common);
+  Command* command = add_soil_test(
+      soil, program, "wheel",
+      "Roll a wheel at imposed slip and compare with the limit of an infinitely fine grid", a,
+      run_wheel_command);
   add_number(*command, "--slip", a->slips, "Slip; several with commas between them", {-1.0, 0.99});
   add_number(*command, "--load", a->test.wheel.load_n, "Load on the wheel [N]", {1e-3, 1e6});
   add_number(*command, "--radius", a->test.wheel.radius_m, "Radius of the wheel [m]", {1e-3, 10.0});
@@ -278,16 +281,8 @@ void register_soil_wheel_command(Command& soil, Program& program) {
   command->add_option("--case", a->cases, "Use the rows whose case begins with this text")
       ->show_default()
       ->type_name("CASE");
-  command->add_option("--charts", a->common.charts, "Output folder for SVG charts")
-      ->type_name("FOLDER");
-  command->callback([a, measured, &program] {
-    program.action = [a, measured] {
-      if (measured->given() && a->measured.empty()) {
-        a->measured = (data_folders().data / "soil" / "single_wheel_ding2011.csv").string();
-      }
-      return run_wheel_command(*a);
-    };
-  });
+  command->add_option("--charts", a->charts, "Output folder for SVG charts")->type_name("FOLDER");
+  a->measured_option = measured;
 }
 
 }  // namespace screed

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "host_sim/core/constants.h"
-#include "host_sim/soil_validation/wheel_trials.h"
-#include "tools/screed/soil/soil_common.h"
+#include "host_sim/soil_validation/soil_measurements.h"
+#include "tools/screed/soil/soil_command.h"
 
 namespace screed {
 namespace {

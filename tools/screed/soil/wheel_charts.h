@@ -7,7 +7,7 @@
 
 #include "host_sim/render/chart/line_chart.h"
 #include "host_sim/soil_validation/soil_measurements.h"
-#include "host_sim/soil_validation/wheel_limit.h"
+#include "host_sim/soil_validation/wheel_testbed.h"
 
 namespace screed {
 
@@ -47,9 +47,9 @@ struct WheelComparison {
 };
 
 /// soil_measured_CASES_sinkage.svg, _pull.svg and _side_force.svg of what was measured. Measured
-/// values are points with error bars (wheel_trials.h), Screed and limit are lines through the means
-/// over the same trials; one set of each a slip angle. Measured values of a single slip angle are
-/// black.
+/// values are points with error bars (soil_measurements.h), Screed and limit are lines through the
+/// means over the same trials; one set of each a slip angle. Measured values of a single slip angle
+/// are black.
 std::vector<WheelChart> measured_charts(const WheelComparison& comparison);
 
 }  // namespace screed

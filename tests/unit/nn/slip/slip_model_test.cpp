@@ -5,7 +5,6 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "nn/slip/slip_choice.h"
 #include "tests/temp_folder.h"
 
 namespace screed::nn {

@@ -10,7 +10,6 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
 #include "nn/data/features.h"
-#include "nn/data/motion_signals.h"
 #include "tests/unit/nn/surrogate/linear_model.h"
 
 namespace screed::nn {
@@ -216,11 +215,11 @@ TEST(Surrogate, ManyRobotsGiveTheBitsOfOne) {
 }
 
 /// forward = 0.01 times the normalised speed of the left track.
-Model staged_model(std::vector<ModelPreprocessingStage> stages) {
+Model staged_model(std::vector<PreprocessingStage> stages) {
   Model model = linear_model({channel("track_left", 0.2)},
                              {channel("forward", 0.01), channel("delta_theta", 0.01)}, {0.5, 0.0},
                              {0.0, 0.0});
-  for (ModelPreprocessingStage& stage : stages) stage.run_time = true;
+  for (PreprocessingStage& stage : stages) stage.run_time = true;
   model.stages = std::move(stages);
   return model;
 }
@@ -249,9 +248,9 @@ void expect_felt(const Model& model, const std::vector<double>& speeds,
 }
 
 TEST(Surrogate, AppliesTheStagesOfRunTimeToItsInputsInTheirOrder) {
-  const ModelPreprocessingStage mean{"mean", "", 0.0, 0.0, 3.0, false};
-  const ModelPreprocessingStage exponential{"exponential", "", 0.0, 0.0, 0.25, false};
-  const ModelPreprocessingStage quantise{"quantise", "", 0.0, 0.0, 0.2, false};
+  const PreprocessingStage mean{"mean", "", 0.0, 0.0, 3.0, false};
+  const PreprocessingStage exponential{"exponential", "", 0.0, 0.0, 0.25, false};
+  const PreprocessingStage quantise{"quantise", "", 0.0, 0.0, 0.2, false};
   const std::vector<double> speeds = {0.1, 0.04, 0.16, 0.0, 0.0};  // 0.5, 0.2, 0.8, 0, 0
   expect_felt(staged_model({mean}), speeds, {0.5, 0.35, 0.5, 1.0 / 3.0, 0.8 / 3.0});
   expect_felt(staged_model({exponential}), speeds, {0.5, 0.425, 0.51875, 0.3890625, 0.291796875});

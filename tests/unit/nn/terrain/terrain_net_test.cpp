@@ -6,9 +6,9 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
-#include "nn/terrain/flux_network.h"
-#include "nn/terrain/flux_trainer.h"
 #include "nn/terrain/terrain_comparison.h"
+#include "nn/terrain/terrain_network.h"
+#include "nn/terrain/terrain_trainer.h"
 #include "tests/temp_folder.h"
 
 namespace screed::nn {
@@ -62,10 +62,11 @@ TEST(FluxNetwork, FileKeepsIt) {
   TempFolder folder;
   FluxNetwork network(6, 5);
   network.write(folder.path() / "n.json");
-  FluxNetwork read = FluxNetwork::read(folder.path() / "n.json");
+  FluxNetwork read = FluxNetwork::read(folder.path() / "n.json").value();
   EXPECT_EQ(read.first(), network.first());
   EXPECT_EQ(read.second(), network.second());
-  EXPECT_THROW(FluxNetwork::read(folder.path() / "none.json"), InputError);
+  EXPECT_FALSE(FluxNetwork::read(folder.path() / "none.json").has_value());
+  EXPECT_THROW(read_terrain_network(folder.path() / "none.json"), InputError);
 }
 
 TEST(FluxTrainer, LearnsTheFluxesOfAnotherNetwork) {

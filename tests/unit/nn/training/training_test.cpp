@@ -8,8 +8,8 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
 #include "nn/training/network_trainer.h"
-#include "nn/training/parameter_update.h"
 #include "nn/training/predict.h"
+#include "nn/training/trainer.h"
 
 namespace screed::nn {
 namespace {
@@ -56,17 +56,17 @@ TEST(NetworkTrainer, AnEpochThatIsStoppedLeavesTheStateBeforeIt) {
   int asked = 0;
   const auto in_the_midst = [&] { return ++asked == 2; };
   const auto never = [] { return false; };
-  NetworkTrainer stopped(network, 7);
-  NetworkTrainer other(network, 7);
-  EXPECT_TRUE(stopped.train_epoch(examples, never));
-  EXPECT_TRUE(other.train_epoch(examples));
-  EXPECT_FALSE(stopped.train_epoch(examples, in_the_midst));
+  const auto stopped = make_network_trainer(network, 7);
+  const auto other = make_network_trainer(network, 7);
+  EXPECT_TRUE(stopped->train_epoch(examples, never));
+  EXPECT_TRUE(other->train_epoch(examples, {}));
+  EXPECT_FALSE(stopped->train_epoch(examples, in_the_midst));
   EXPECT_EQ(asked, 2);
-  EXPECT_EQ(stopped.epochs(), 1U);
-  EXPECT_EQ(stopped.state().parameters, other.state().parameters);
-  EXPECT_TRUE(stopped.train_epoch(examples, never));
-  EXPECT_TRUE(other.train_epoch(examples));
-  EXPECT_EQ(stopped.state().parameters, other.state().parameters);
+  EXPECT_EQ(stopped->state().epochs, 1U);
+  EXPECT_EQ(stopped->state().parameters, other->state().parameters);
+  EXPECT_TRUE(stopped->train_epoch(examples, never));
+  EXPECT_TRUE(other->train_epoch(examples, {}));
+  EXPECT_EQ(stopped->state().parameters, other->state().parameters);
 }
 
 // f = (x - 1)^2 + 10 (y + 2)^2 from (4, 4), worked out step by step from the rule of Igel and
@@ -131,21 +131,21 @@ TEST(Optimisers, AdamsFirstStepIsTheLearningRate) {
 
 TEST(Trainer, GradientsAreThoseOfTheLoss) {
   // Without batch normalisation the loss is a function of the parameters alone.
-  NetworkTrainer trainer(small_network(BatchNormalisation::kNone, false), 7);
+  const auto trainer = make_network_trainer(small_network(BatchNormalisation::kNone, false), 7);
   const Examples examples = random_examples(24);
-  const std::vector<std::vector<float>> gradient = trainer.gradient(examples);
-  const TrainerState state = trainer.state();
+  const std::vector<std::vector<float>> gradient = trainer->gradient(examples);
+  const TrainerState state = trainer->state();
   ASSERT_EQ(gradient.size(), state.parameters.size());
   for (std::size_t array = 0; array < gradient.size(); ++array) {
     for (std::size_t i = 0; i < gradient[array].size(); ++i) {
       constexpr float kStep = 1e-2F;
       TrainerState moved = state;
       moved.parameters[array][i] += kStep;
-      trainer.restore(moved);
-      const double above = loss(trainer.outputs(examples), examples);
+      trainer->restore(moved);
+      const double above = loss(trainer->outputs(examples), examples);
       moved.parameters[array][i] -= 2.0F * kStep;
-      trainer.restore(moved);
-      const double below = loss(trainer.outputs(examples), examples);
+      trainer->restore(moved);
+      const double below = loss(trainer->outputs(examples), examples);
       EXPECT_NEAR(gradient[array][i], (above - below) / 2e-2, 2e-4) << array << " " << i;
     }
   }
@@ -200,10 +200,10 @@ double normalised_loss(const TrainerState& state, const Examples& examples, doub
 }
 
 TEST(Trainer, GradientsThroughBatchNormalisationWithScale) {
-  NetworkTrainer trainer(small_network(BatchNormalisation::kScaled, false), 7);
+  const auto trainer = make_network_trainer(small_network(BatchNormalisation::kScaled, false), 7);
   const Examples examples = random_examples(1024);
-  const std::vector<std::vector<float>> gradient = trainer.gradient(examples);
-  const TrainerState state = trainer.state();
+  const std::vector<std::vector<float>> gradient = trainer->gradient(examples);
+  const TrainerState state = trainer->state();
   // Arrays a layer: weights, biases, scales, offsets; the state has means and variances behind.
   for (std::size_t layer = 0; layer < 3; ++layer) {
     for (std::size_t kind = 0; kind < 4; ++kind) {
@@ -226,45 +226,15 @@ TEST(Trainer, GradientsThroughBatchNormalisationWithScale) {
   }
 }
 
-TEST(Trainer, LogisticGradientIsTheSlopeOfTheCrossEntropy) {
-  NetworkConfiguration network = small_network(BatchNormalisation::kNone, true);
-  network.loss = Loss::kLogistic;
-  Examples examples = random_examples(30);
-  for (float& wanted : examples.out) wanted = wanted > -0.1F ? 1.0F : 0.0F;
-  NetworkTrainer trainer(network, 5);
-  const std::vector<std::vector<float>> gradient = trainer.gradient(examples);
-  const TrainerState state = trainer.state();
-  const auto entropy = [&](std::size_t array, std::size_t i, float change) {
-    TrainerState changed = state;
-    changed.parameters[array][i] += change;
-    trainer.restore(changed);
-    const std::vector<float> logits = trainer.outputs(examples);
-    double sum = 0.0;
-    for (std::size_t row = 0; row < logits.size(); ++row) {
-      const double chance = 1.0 / (1.0 + std::exp(-static_cast<double>(logits[row])));
-      sum -= std::log(examples.out[row] > 0.5F ? chance : 1.0 - chance);
-    }
-    return sum / static_cast<double>(logits.size());
-  };
-  ASSERT_EQ(gradient.size(), state.parameters.size());
-  for (std::size_t array = 0; array < gradient.size(); ++array) {
-    for (std::size_t i = 0; i < gradient[array].size(); ++i) {
-      const double slope = (entropy(array, i, 1e-3F) - entropy(array, i, -1e-3F)) / 2e-3;
-      EXPECT_NEAR(static_cast<double>(gradient[array][i]), slope, 1e-4 + 0.005 * std::abs(slope))
-          << array << " " << i;
-    }
-  }
-}
-
 TEST(Trainer, FoldedLayersGiveWhatTinyDnnGives) {
   for (const BatchNormalisation norm :
        {BatchNormalisation::kNone, BatchNormalisation::kPlain, BatchNormalisation::kScaled}) {
     for (const bool linear : {false, true}) {
-      NetworkTrainer trainer(small_network(norm, linear), 11);
+      const auto trainer = make_network_trainer(small_network(norm, linear), 11);
       const Examples examples = random_examples(200);
-      for (int epoch = 0; epoch < 3; ++epoch) trainer.train_epoch(examples);
-      const std::vector<float> theirs = trainer.outputs(examples);
-      const std::vector<double> ours = predict(trainer.folded(), examples);
+      for (int epoch = 0; epoch < 3; ++epoch) trainer->train_epoch(examples, {});
+      const std::vector<float> theirs = trainer->outputs(examples);
+      const std::vector<double> ours = predict(trainer->folded(), examples);
       for (std::size_t i = 0; i < theirs.size(); ++i) {
         const double value = std::clamp(static_cast<double>(theirs[i]), -1.0, 1.0);
         ASSERT_NEAR(ours[i], value, 2e-5) << static_cast<int>(norm) << linear << i;
@@ -274,14 +244,14 @@ TEST(Trainer, FoldedLayersGiveWhatTinyDnnGives) {
 }
 
 TEST(Trainer, LearnsAndTheIntegersFollow) {
-  NetworkTrainer trainer(small_network(BatchNormalisation::kNone, false), 1);
+  const auto trainer = make_network_trainer(small_network(BatchNormalisation::kNone, false), 1);
   const Examples examples = random_examples(400);
-  const double before = loss(trainer.outputs(examples), examples);
-  for (int epoch = 0; epoch < 60; ++epoch) trainer.train_epoch(examples);
-  const double after = loss(trainer.outputs(examples), examples);
+  const double before = loss(trainer->outputs(examples), examples);
+  for (int epoch = 0; epoch < 60; ++epoch) trainer->train_epoch(examples, {});
+  const double after = loss(trainer->outputs(examples), examples);
   EXPECT_LT(after, 0.05 * before);
-  const std::vector<double> in_float = predict(trainer.folded(), examples);
-  const std::vector<double> in_integers = predict(quantise(trainer.folded()), examples);
+  const std::vector<double> in_float = predict(trainer->folded(), examples);
+  const std::vector<double> in_integers = predict(quantise(trainer->folded()), examples);
   for (std::size_t i = 0; i < in_float.size(); ++i) {
     ASSERT_NEAR(in_float[i], in_integers[i], 1e-3);
   }
@@ -293,22 +263,21 @@ TEST(Trainer, GoesOnFromAStateAsIfItHadNeverStopped) {
        {OptimiserKind::kIrprop, OptimiserKind::kSgd, OptimiserKind::kAdam}) {
     NetworkConfiguration network = small_network(BatchNormalisation::kScaled, false);
     network.optimiser = kind;
-    NetworkTrainer through(network, 5);
-    for (int epoch = 0; epoch < 4; ++epoch) through.train_epoch(examples);
-    NetworkTrainer first(network, 5);
-    for (int epoch = 0; epoch < 2; ++epoch) first.train_epoch(examples);
-    NetworkTrainer second(network, 99);
-    second.restore(first.state());
-    NetworkTrainer third(network, 5);
-    third.restore(first.state());
-    for (int epoch = 0; epoch < 2; ++epoch) third.train_epoch(examples);
-    EXPECT_EQ(third.state().parameters, through.state().parameters);
-    EXPECT_EQ(second.state().parameters, first.state().parameters);
+    const auto through = make_network_trainer(network, 5);
+    for (int epoch = 0; epoch < 4; ++epoch) through->train_epoch(examples, {});
+    const auto first = make_network_trainer(network, 5);
+    for (int epoch = 0; epoch < 2; ++epoch) first->train_epoch(examples, {});
+    const auto second = make_network_trainer(network, 99);
+    second->restore(first->state());
+    const auto third = make_network_trainer(network, 5);
+    third->restore(first->state());
+    for (int epoch = 0; epoch < 2; ++epoch) third->train_epoch(examples, {});
+    EXPECT_EQ(third->state().parameters, through->state().parameters);
+    EXPECT_EQ(second->state().parameters, first->state().parameters);
   }
-  NetworkTrainer other(small_network(BatchNormalisation::kNone, false), 5);
-  EXPECT_THROW(
-      other.restore(NetworkTrainer(small_network(BatchNormalisation::kPlain, false), 5).state()),
-      InputError);
+  const auto other = make_network_trainer(small_network(BatchNormalisation::kNone, false), 5);
+  const auto plain = make_network_trainer(small_network(BatchNormalisation::kPlain, false), 5);
+  EXPECT_THROW(other->restore(plain->state()), InputError);
 }
 
 TEST(Measures, AgainstValuesByHand) {

@@ -12,8 +12,7 @@
 
 #include "host_sim/physics/vehicle/urdf/urdf_importer.h"
 #include "host_sim/physics/vehicle/vehicle.h"
-#include "host_sim/soil_validation/repose_pile.h"
-#include "host_sim/soil_validation/soil_robot.h"
+#include "host_sim/soil_validation/bed_trials.h"
 #include "paths.h"
 #include "tests/sanitizers.h"
 #include "tests/unit/allocations.h"

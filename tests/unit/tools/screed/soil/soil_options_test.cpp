@@ -3,7 +3,7 @@
 
 #include "tools/command_line/help.h"
 #include "tools/command_line/program.h"
-#include "tools/screed/soil/soil_common.h"
+#include "tools/screed/soil/soil_command.h"
 
 namespace screed {
 namespace {

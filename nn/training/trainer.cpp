@@ -1,11 +1,15 @@
-// The rules as published.
-#include "nn/training/parameter_update.h"
+// The loop over epochs, and the optimisers' rules as published.
+#include "nn/training/trainer.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace screed::nn {
 namespace {
+
+constexpr std::size_t kCheckpoints = 50;
 
 constexpr float kRpropFirstStep = 0.1F;
 constexpr float kRpropMaxStep = 50.0F;
@@ -66,6 +70,62 @@ void adam(double rate, std::span<const float> gradient, double l2, std::span<flo
 }
 
 }  // namespace
+
+void run_training(Trainer& trainer, const TrainingPlan& plan, std::vector<EpochLoss>& losses) {
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t best = 0;  // epoch, counting from 1
+  const auto compare = [&](std::size_t epoch) {
+    const bool better = losses[epoch - 1].choice < least;
+    if (better) {
+      least = losses[epoch - 1].choice;
+      best = epoch;
+    }
+    return better;
+  };
+  for (std::size_t epoch = 1; epoch <= losses.size(); ++epoch) compare(epoch);
+  const auto done = [&] {
+    return losses.size() >= plan.epochs ||
+           (plan.patience > 0 && losses.size() - best >= plan.patience);
+  };
+  const std::size_t interval = std::max<std::size_t>(1, plan.epochs / kCheckpoints);
+  while (!done()) {
+    const bool stopped = plan.stop && plan.stop();
+    const auto loss = stopped ? std::nullopt : trainer.train_epoch(losses.size(), plan.stop);
+    if (!loss.has_value()) {
+      trainer.checkpoint();
+      return;
+    }
+    losses.push_back(*loss);
+    const std::size_t epochs = losses.size();
+    if (compare(epochs) || !plan.keep_best) trainer.keep();
+    if (epochs % interval == 0 || done()) trainer.checkpoint();
+    if (plan.progress) {
+      plan.progress(losses,
+                    done() ? 1.0 : static_cast<double>(epochs) / static_cast<double>(plan.epochs));
+    }
+  }
+}
+
+void run_epochs(Trainer& trainer, std::size_t epochs, const EpochProgress& progress) {
+  std::vector<EpochLoss> losses;
+  TrainingPlan plan{.epochs = epochs};
+  if (progress) {
+    plan.progress = [&](const std::vector<EpochLoss>& so_far, double /*share*/) {
+      progress(so_far.size(), so_far.back().training);
+    };
+  }
+  run_training(trainer, plan, losses);
+}
+
+std::vector<std::uint32_t> shuffled(std::size_t count, WorldRandom random) {
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  for (std::size_t i = count; i > 1; --i) {
+    // 32 random bits for some 10^5 examples: the bias is below 10^-4 and the same everywhere.
+    std::swap(order[i - 1], order[(std::uint64_t{random.next()} * i) >> 32U]);
+  }
+  return order;
+}
 
 void update_parameters(OptimiserKind optimiser, double learning_rate, double l2,
                        std::span<const float> gradient, std::span<float> parameters,

@@ -1,5 +1,5 @@
 // Recorded drives as files.
-#include "nn/slip/slip_archive.h"
+#include "nn/slip/slip_drive.h"
 
 #include <gtest/gtest.h>
 

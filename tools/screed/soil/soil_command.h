@@ -1,12 +1,13 @@
-// What the subcommands of `screed soil` share: the options of soil and grid, and how results are
-// shown beside what they should be.
+// What the subcommands of `screed soil` share: the options of soil and grid, and how what a test
+// found is shown beside what it should be.
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-#include "tools/command_line/command.h"
+#include "tools/screed/cli/command.h"
 
 #include "host_sim/core/json.h"
 #include "host_sim/physics/soil/soil_bed.h"
@@ -51,6 +52,14 @@ struct SoilArguments {
   /// The preset with what was given in its place. Throws InputError.
   SoilParameters soil() const;
   SoilOptions options() const;
+  /// Puts soil, its handling and the grid into a test.
+  template <class Test>
+  void set(Test& test) const {
+    test.soil = soil();
+    test.options = options();
+    test.cell_m = cell_m;
+    test.step_s = step_s;
+  }
   /// The place of a chart; its folder is made.
   std::filesystem::path chart(const char* name) const;
   /// Whether the soil and its handling are those of the peer's figures.
@@ -65,15 +74,34 @@ struct SoilGridRanges {
 
 void add_soil_options(Command& command, SoilArguments& arguments,
                       const SoilGridRanges& ranges = {});
-
-void print_table(const std::string& heading, const char* limit_name,
-                 const std::vector<SoilLine>& lines);
-Json to_json(const std::vector<SoilLine>& lines);
 Json soil_json(const SoilArguments& arguments);
 /// Prints JSON, members in the order of their names.
 void print_sorted(Json json);
+
+/// What a test found.
+struct SoilReport {
+  const char* test;  ///< for programs
+  std::string heading;
+  std::string limit_name;  ///< what the column of limits is called
+  std::vector<SoilLine> lines;
+  Json more = Json::object();  ///< further members for programs
+  std::string below = "";      ///< text under the table
+};
 /// Prints table or JSON; the exit code.
-int finish(const SoilArguments& arguments, const char* test, const std::string& heading,
-           const char* limit_name, const std::vector<SoilLine>& lines);
+int print(const SoilArguments& arguments, SoilReport report);
+
+/// A subcommand that runs one test. `Arguments` are SoilArguments with what it adds to them; the
+/// caller adds the options of those.
+template <class Arguments>
+Command* add_soil_test(Command& soil, Program& program, const char* name, const char* help,
+                       const std::shared_ptr<Arguments>& arguments, SoilReport (*run)(Arguments),
+                       const SoilGridRanges& ranges = {}) {
+  Command* command = soil.add_subcommand(name, help);
+  add_soil_options(*command, *arguments, ranges);
+  command->callback([arguments, run, &program] {
+    program.action = [arguments, run] { return print(*arguments, run(*arguments)); };
+  });
+  return command;
+}
 
 }  // namespace screed
