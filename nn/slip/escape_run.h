@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "host_sim/core/task_progress.h"
-#include "nn/slip/stuck_scenario.h"
+#include "nn/slip/slip_drive.h"
 
 namespace screed::nn {
 
-/// The trapped drive of this seed (stuck_scenario.h) by an algorithm that may escape: where the
+/// The trapped drive of this seed (slip_drive.h) by an algorithm that may escape: where the
 /// ground station would drive, the random walk with that speed, straight on or in arcs.
 StuckScenario escape_scenario(std::uint64_t seed);
 

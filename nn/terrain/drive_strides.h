@@ -1,4 +1,5 @@
-// A few frames of a drive, after which a network says what they did to the ground.
+// A drive in strides of a few frames: where the robot went, how far its wheels turned, and what
+// that did to the ground; how close what a network says of it comes.
 #pragma once
 
 #include <array>
@@ -41,9 +42,7 @@ struct Stride {
   double roll = 0.0;
 };
 
-// A recorded drive in strides of a few frames: where the robot went, how far its wheels turned, and
-// what that did to the ground. What networks of the terrain learn from and are compared with.
-
+/// A recorded drive: what networks of the terrain learn from and are compared with.
 class DriveStrides {
  public:
   /// Throws InputError when the run cannot be read or its heights were not recorded.
@@ -70,5 +69,31 @@ class DriveStrides {
   std::array<WheelPosition, 4> wheels_{};
   std::vector<Stride> strides_;
 };
+
+/// How close predicted terrain is to the recorded one.
+struct TerrainComparison {
+  double touched_m2 = 0.0;        ///< area whose height was changed by more than 0.1 mm in truth
+  double true_change_mm = 0.0;    ///< RMS of the true change there
+  double error_mm = 0.0;          ///< RMSE there
+  double outside_mm = 0.0;        ///< RMS of what was changed elsewhere on the bed
+  double moved_cm3 = 0.0;         ///< volume that was lowered, predicted
+  double volume_cm3 = 0.0;        ///< net change of the volume, predicted; 0 in truth
+  std::int64_t volume_units = 0;  ///< the same, as sum of all heights
+};
+
+/// All three on one grid.
+TerrainComparison compare(const HeightField& before, const HeightField& real,
+                          const HeightField& predicted);
+
+/// Ruts in a cross-section of the path, on average over the strides: a rut is where the
+/// change goes below a third of the deepest of that cross-section, and what rises above a tenth of
+/// it in between parts two. Only strides that go straight on, away from where the robot stands at
+/// the ends, are looked at; cross-sections without a rut of 0.2 mm count as none.
+struct RutCount {
+  double mean = 0.0;
+  std::vector<std::size_t> histogram;  ///< cross-sections with so many ruts
+};
+RutCount count_ruts(const HeightField& before, const HeightField& after,
+                    const std::vector<Stride>& path);
 
 }  // namespace screed::nn

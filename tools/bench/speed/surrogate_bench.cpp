@@ -10,7 +10,7 @@
 #include "host_sim/run/experiment/robot_model.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/surrogate.h"
-#include "nn/terrain/terrain_comparison.h"
+#include "nn/terrain/drive_strides.h"
 #include "nn/terrain/terrain_network.h"
 #include "tools/bench/require.h"
 

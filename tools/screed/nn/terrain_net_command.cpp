@@ -12,7 +12,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/render/picture/canvas.h"
 #include "host_sim/render/picture/map_frame.h"
-#include "nn/terrain/terrain_comparison.h"
+#include "nn/terrain/drive_strides.h"
 #include "nn/terrain/terrain_network.h"
 #include "nn/terrain/terrain_trainer.h"
 #include "tools/screed/cli/command.h"

@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/run/world/placement.h"
 #include "tests/temp_folder.h"
 
 namespace screed::nn {
@@ -70,6 +75,63 @@ TEST(SlipArchive, NamesTellDrivesApart) {
   EXPECT_NE(archive_name(stuck_scenario(5, ScenarioKind::kFree, 15.0)), name) << "longer";
   EXPECT_NE(archive_name(stuck_scenario(5, ScenarioKind::kOrdinary, 14.0)), name);
   EXPECT_EQ(archive_name(stuck_scenario(5, ScenarioKind::kFree, 14.0)), name);
+}
+
+// ---- What the seeded drives of the slip watch draw from
+
+TEST(StuckScenario, DrawsEverySoilAndEveryTrap) {
+  std::set<std::string> grounds;
+  std::set<std::string> traps;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    const StuckScenario scenario = stuck_scenario(seed, ScenarioKind::kTrapped, 10.0);
+    grounds.insert(scenario.ground);
+    traps.insert(scenario.experiment.trap.kind);
+    EXPECT_EQ(scenario.experiment.map.model, scenario.ground == "rigid" ? "rigid" : "scm");
+    if (scenario.ground != "rigid") {
+      EXPECT_EQ(scenario.experiment.soil.preset, scenario.ground);
+    }
+  }
+  std::set<std::string> soils = {"rigid"};
+  for (const std::string& name : soil_preset_names()) soils.insert(name);
+  EXPECT_EQ(grounds, soils);
+  const std::vector<std::string> kinds = trap_kinds();
+  EXPECT_EQ(traps, std::set<std::string>(kinds.begin() + 1, kinds.end()));
+}
+
+TEST(StuckScenario, OrdinaryDrivesRunEveryLevelingAlgorithmAndMeetTheirOwnRuts) {
+  std::set<std::string> algorithms;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const Experiment e = stuck_scenario(seed, ScenarioKind::kOrdinary, 10.0).experiment;
+    EXPECT_EQ(e.trap.kind, "none");
+    algorithms.insert(e.experiment.algorithm);
+    if (e.experiment.algorithm == "drive") {
+      EXPECT_LE(e.map.size_m, 3.0) << "round the bed in a drive";
+      EXPECT_EQ(e.drive.yaw_rate_deg_per_s, 0.0);
+    }
+  }
+  EXPECT_EQ(algorithms, (std::set<std::string>{"hill_sensing", "spin_on_peak", "random_walk",
+                                               "training_drive", "drive"}));
+}
+
+TEST(StuckScenario, HalfOfTheOrdinaryDrivesAreInBedsWithWalls) {
+  int beds = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const Experiment e = stuck_scenario(seed, ScenarioKind::kOrdinary, 10.0).experiment;
+    if (e.map.edges != "walls") continue;
+    ++beds;
+    EXPECT_LE(e.map.size_m, 3.0);
+    EXPECT_LE(e.map.max_slope_deg, 25.0);
+    EXPECT_LE(std::max(std::abs(e.vehicle.x_m), std::abs(e.vehicle.y_m)), 0.3) << "clear of them";
+  }
+  EXPECT_NEAR(beds, 50, 15);
+}
+
+TEST(StuckScenario, KindsOfTheSameSeedAreDrivesOfTheirOwn) {
+  const Experiment free = stuck_scenario(3, ScenarioKind::kFree, 10.0).experiment;
+  const Experiment trapped = stuck_scenario(3, ScenarioKind::kTrapped, 10.0).experiment;
+  EXPECT_NE(free.vehicle.x_m, trapped.vehicle.x_m);
+  EXPECT_EQ(free.trap.kind, "none");
+  EXPECT_NE(trapped.trap.kind, "none");
 }
 
 }  // namespace

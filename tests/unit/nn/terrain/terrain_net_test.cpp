@@ -6,7 +6,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
-#include "nn/terrain/terrain_comparison.h"
+#include "nn/terrain/drive_strides.h"
 #include "nn/terrain/terrain_network.h"
 #include "nn/terrain/terrain_trainer.h"
 #include "tests/temp_folder.h"
