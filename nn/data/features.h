@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -98,42 +97,5 @@ FeatureTable read_features(const std::filesystem::path& session,
 /// The session of that name in a folder of sessions: NAME/session.h5, or NAME-NNNN/session.h5 with
 /// the highest number. Throws InputError when there is none.
 std::filesystem::path find_session(const std::filesystem::path& folder, const std::string& name);
-
-/// What a network of motion may see of a robot and of its ground, by the names that model files use
-/// for their inputs. Units are those of the features: displacements and turns are of one frame of
-/// 10 ms.
-enum class MotionSignal : std::uint8_t {
-  kForward1,
-  kSideways1,
-  kTurn1,
-  kTrackLeft,
-  kTrackRight,
-  kWheelLeft,
-  kWheelRight,
-  kPitch,
-  kRoll,
-  kSpeed,
-  kSpin,
-  kClimb,
-  kLean,
-  kSlide,
-  kPivot,
-};
-inline constexpr std::size_t kMotionSignals = 15;
-
-struct MotionSignalInfo {
-  MotionSignal signal;
-  const char* name;
-  const char* unit;
-  const char* meaning;
-};
-
-/// Every signal, in the order of the enumeration.
-std::span<const MotionSignalInfo> motion_signals();
-std::optional<MotionSignal> motion_signal_named(std::string_view name);
-
-constexpr std::size_t row_of(MotionSignal signal) {
-  return static_cast<std::size_t>(signal);
-}
 
 }  // namespace screed::nn

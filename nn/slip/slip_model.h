@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "nn/infer/gated.h"
-#include "nn/slip/stuck_rules.h"
 
 namespace screed::nn {
 
@@ -35,23 +34,5 @@ void write_slip_model(const std::filesystem::path& file, const SlipModel& model)
 
 /// Text of firmware/estimation/slip_model.h.
 std::string slip_model_header(const SlipModel& model);
-
-// The evidence from which on a robot counts as stuck, chosen on drives of their own.
-
-struct ThresholdResult {
-  std::uint16_t stuck = 0;
-  StuckCounts counts;
-};
-
-/// Counts of every threshold tried, rising, with the network of the model and its threshold of
-/// free.
-std::vector<ThresholdResult> try_thresholds(const SlipModel& model,
-                                            const std::vector<SlipDrive>& drives);
-
-/// Of the thresholds from which on all have at most that many false alarms an hour and early alarms
-/// a drive into a trap, the one that detects most, the highest of those that detect equally many.
-/// The highest one where none holds.
-std::uint16_t choose_threshold(const std::vector<ThresholdResult>& results, double false_per_hour,
-                               double early_per_drive);
 
 }  // namespace screed::nn

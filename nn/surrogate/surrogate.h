@@ -15,7 +15,7 @@
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/standin/planar_pose.h"
 #include "nn/batch/batch_network.h"
-#include "nn/data/features.h"
+#include "nn/data/motion_signals.h"
 #include "nn/data/preprocessing.h"
 #include "nn/model/model_file.h"
 

@@ -9,7 +9,7 @@
 #include "firmware/robot/robot.h"
 #include "host_sim/run/world/world.h"
 #include "host_sim/run/world/world_setup.h"
-#include "nn/slip/stuck_rules.h"
+#include "nn/slip/slip_campaign.h"
 #include "tests/temp_folder.h"
 
 namespace screed::nn {

@@ -10,6 +10,7 @@
 #include "host_sim/core/json.h"
 #include "host_sim/core/statistics.h"
 #include "nn/slip/gated_trainer.h"
+#include "nn/slip/slip_campaign.h"
 #include "nn/slip/slip_model.h"
 #include "nn/slip/stuck_rules.h"
 #include "tools/screed/cli/command.h"

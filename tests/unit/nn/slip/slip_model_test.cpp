@@ -1,5 +1,6 @@
 // The slip watch's model as a file and as a header, and the choice of its threshold.
 #include "nn/slip/slip_model.h"
+#include "nn/slip/slip_campaign.h"
 
 #include <gtest/gtest.h>
 

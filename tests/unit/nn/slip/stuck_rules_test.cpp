@@ -1,5 +1,5 @@
 // What counts as dug in, detected and false, on drives made up by hand.
-#include "nn/slip/stuck_rules.h"
+#include "nn/slip/slip_campaign.h"
 
 #include <gtest/gtest.h>
 

@@ -280,6 +280,61 @@ TEST(Trainer, GoesOnFromAStateAsIfItHadNeverStopped) {
   EXPECT_THROW(other->restore(plain->state()), InputError);
 }
 
+/// Says losses as they were made up, and notes what it is asked for.
+class MadeUpTrainer : public Trainer {
+ public:
+  explicit MadeUpTrainer(std::vector<double> losses) : losses_(std::move(losses)) {}
+
+  std::optional<EpochLoss> train_epoch(std::size_t epoch,
+                                       const std::function<bool()>& stop) override {
+    if (stop && stop()) return std::nullopt;
+    trained = epoch + 1;
+    return EpochLoss{-1.0, losses_.at(epoch)};
+  }
+  void keep() override { kept.push_back(trained); }
+  void checkpoint() override { checkpoints.push_back(trained); }
+
+  std::size_t trained = 0;
+  std::vector<std::size_t> kept, checkpoints;
+
+ private:
+  std::vector<double> losses_;
+};
+
+TEST(RunTraining, KeepsTheBestAndStopsWhenItGetsNoBetter) {
+  const std::vector<double> course = {5.0, 3.0, 4.0, 3.0, 3.5, 1.0};
+  MadeUpTrainer patient(course);
+  std::vector<EpochLoss> losses;
+  std::vector<double> shares;
+  TrainingPlan plan{.epochs = 6, .patience = 3, .keep_best = true};
+  plan.progress = [&](const auto& /*so_far*/, double share) { shares.push_back(share); };
+  run_training(patient, plan, losses);
+  EXPECT_EQ(losses.size(), 5U);
+  EXPECT_EQ(patient.kept, (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(shares, (std::vector<double>{1.0 / 6, 2.0 / 6, 3.0 / 6, 4.0 / 6, 1.0}));
+  MadeUpTrainer last(course);
+  losses.clear();
+  run_training(last, {.epochs = 6}, losses);
+  EXPECT_EQ(last.kept, (std::vector<std::size_t>{1, 2, 3, 4, 5, 6}));
+}
+
+TEST(RunTraining, ACheckpointIsMadeWhenItIsStoppedAndGoesOnFromThere) {
+  const std::vector<double> course = {5.0, 3.0, 4.0, 4.0, 1.0, 9.0};
+  MadeUpTrainer stopped(course);
+  std::vector<EpochLoss> losses;
+  TrainingPlan plan{.epochs = 200, .patience = 2, .keep_best = true};
+  plan.stop = [&] { return stopped.trained == 3; };
+  run_training(stopped, plan, losses);
+  EXPECT_EQ(losses.size(), 3U);
+  EXPECT_EQ(stopped.checkpoints, (std::vector<std::size_t>{3})) << "every fourth, and at the end";
+  MadeUpTrainer resumed(course);
+  plan.stop = {};
+  run_training(resumed, plan, losses);
+  EXPECT_EQ(losses.size(), 4U) << "the second epoch was the best, two ago";
+  EXPECT_TRUE(resumed.kept.empty());
+  EXPECT_EQ(resumed.checkpoints, (std::vector<std::size_t>{4}));
+}
+
 TEST(Measures, AgainstValuesByHand) {
   const std::vector<double> real = {1.0, 2.0, 3.0, 4.0};
   const std::vector<double> twice = {2.0, 4.0, 6.0, 8.0};
