@@ -8,12 +8,14 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <memory>
 #include <sstream>
 #include <utility>
 
-#include "host_sim/engine/worker_process.h"
+#include "host_sim/core/child_process.h"
+#include "host_sim/core/errors.h"
 
 namespace screed {
 namespace {
@@ -31,6 +33,22 @@ std::string seconds_text(double seconds) {
   return text.str();
 }
 
+/// This same program again, be its file replaced meanwhile.
+std::unique_ptr<ChildProcess> start_worker(const PoolOptions& options) {
+  constexpr const char* kThisProgram = "/proc/self/exe";
+  ChildStart start{.words = {std::filesystem::read_symlink(kThisProgram).string()},
+                   .program = kThisProgram,
+                   .is_sent_lines = true,
+                   .output_is_read = true,
+                   .log = options.log};
+  start.words.insert(start.words.end(), options.arguments.begin(), options.arguments.end());
+  try {
+    return std::make_unique<ChildProcess>(std::move(start));
+  } catch (const RunError& error) {
+    throw RunError(std::string("cannot start a worker: ") + error.what());
+  }
+}
+
 class WorkerSlot {
  public:
   bool has_worker() const { return worker_ != nullptr; }
@@ -39,7 +57,7 @@ class WorkerSlot {
   Clock::time_point deadline() const { return deadline_; }
 
   void start(const PoolOptions& options, PoolJob job) {
-    if (!worker_) worker_ = std::make_unique<WorkerProcess>(options.arguments, options.log);
+    if (!worker_) worker_ = start_worker(options);
     job_ = std::move(job);
     deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                    std::chrono::duration<double>(job_->limit_s));
@@ -48,18 +66,18 @@ class WorkerSlot {
 
   /// Takes what the worker has said.
   void look(const PoolHandler& handler) {
-    std::vector<std::string> lines;
-    const bool alive = worker_->receive(lines);
-    if (!lines.empty() && job_.has_value()) {
-      const PoolJob job = *std::exchange(job_, std::nullopt);
-      handler.answered(job, lines.front());
+    const bool alive = worker_->receive(said_);
+    const size_t end = said_.find('\n');
+    if (end != std::string::npos) {
+      const std::string answer = std::exchange(said_, "").substr(0, end);
+      if (job_.has_value()) handler.answered(*std::exchange(job_, std::nullopt), answer);
     }
     if (!alive) lose(handler, "");
   }
 
   void end_if_late(const PoolHandler& handler) {
     if (!job_.has_value() || Clock::now() < deadline_) return;
-    worker_->kill();
+    kill(worker_->pid(), SIGKILL);
     lose(handler, "did not end within " + seconds_text(job_->limit_s));
   }
 
@@ -74,14 +92,17 @@ class WorkerSlot {
  private:
   /// `why` is the reason where it is known already.
   void lose(const PoolHandler& handler, std::string why) {
-    const std::string how = worker_->wait();
+    worker_->wait();
+    const std::string how = worker_->end_text();
     worker_.reset();
+    said_.clear();
     if (!job_.has_value()) return;
     const PoolJob job = *std::exchange(job_, std::nullopt);
     handler.lost(job, why.empty() ? "its worker " + how : why);
   }
 
-  std::unique_ptr<WorkerProcess> worker_;
+  std::unique_ptr<ChildProcess> worker_;
+  std::string said_;  ///< of a line that is not complete yet
   std::optional<PoolJob> job_;
   Clock::time_point deadline_;
 };

@@ -108,11 +108,7 @@ class SiteCamera : public RobotAtPort {
   }
 
   Result camera(const std::string& arguments) const {
-    const std::string command = "cd '" + root_.string() + "' && '" + camera_ + "' " + arguments +
-                                " > '" + log("camera.out") + "' 2> '" + log("camera.err") + "'";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(log("camera.out")),
-            read(log("camera.err"))};
+    return execute("'" + camera_ + "' " + arguments);
   }
 
   void write_boards() const {

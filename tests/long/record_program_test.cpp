@@ -3,14 +3,13 @@
 // Long: sessions are recorded and exported whole, and twice where bytes are compared.
 #include <png.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/child_process.h"
 #include "host_sim/core/json.h"
 #include "host_sim/run/session/session_reader.h"
 #include "host_sim/run/session/session_writer.h"
@@ -39,14 +38,9 @@ class RecordProgram : public Program {
 
   /// What a program prints; the test fails when it does not end well.
   std::string shell(const std::string& command) const {
-    std::string text;
-    std::FILE* pipe = popen(("cd '" + root_.string() + "' && " + command + " 2>&1").c_str(), "r");
-    if (pipe == nullptr) return "";
-    std::array<char, 4096> block{};
-    for (size_t n = 0; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
-      text.append(block.data(), n);
-    EXPECT_EQ(pclose(pipe), 0) << command << "\n" << text;
-    return text;
+    const ShellOutput output = shell_output("cd '" + root_.string() + "' && " + command + " 2>&1");
+    EXPECT_EQ(output.exit_code, 0) << command << "\n" << output.text;
+    return output.text;
   }
 };
 

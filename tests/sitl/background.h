@@ -1,18 +1,18 @@
 // The program in the background, with its workers, to be met in the midst of its work.
 #pragma once
 
-#include <fcntl.h>
 #include <sched.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "host_sim/core/child_process.h"
 #include "tests/temp_folder.h"
 
 namespace screed::testing {
@@ -22,47 +22,17 @@ class Background {
  public:
   Background(const std::string& program, std::vector<std::string> arguments,
              const std::filesystem::path& folder, const std::string& log) {
+    write_text(log, "");
     arguments.insert(arguments.begin(), program);
-    std::vector<char*> words;
-    words.reserve(arguments.size() + 1);
-    for (std::string& argument : arguments) words.push_back(argument.data());
-    words.push_back(nullptr);
-    pid_ = fork();
-    if (pid_ != 0) return;
-    const int output = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (output < 0 || chdir(folder.c_str()) != 0 || dup2(output, STDOUT_FILENO) < 0 ||
-        dup2(output, STDERR_FILENO) < 0)
-      _exit(127);
-    execv(words[0], words.data());
-    _exit(127);
-  }
-  Background(const Background&) = delete;
-  Background& operator=(const Background&) = delete;
-  ~Background() {
-    signal(SIGKILL);
-    wait();
+    child_.emplace(ChildStart{.words = std::move(arguments), .folder = folder, .log = log});
   }
 
-  void signal(int number) const {
-    if (pid_ > 0) ::kill(pid_, number);
+  void signal(int number) {
+    if (runs()) kill(child_->pid(), number);
   }
   /// -1 when a signal ended it.
-  int wait() {
-    if (pid_ <= 0) return exit_code_;
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    pid_ = -1;
-    exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return exit_code_;
-  }
-  bool runs() {
-    int status = 0;
-    if (pid_ > 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
-      pid_ = -1;
-      exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    }
-    return pid_ > 0;
-  }
+  int wait() { return child_->wait(); }
+  bool runs() { return !child_->ended().has_value(); }
   /// Its children that have become workers.
   std::vector<pid_t> workers() const {
     std::vector<pid_t> children;
@@ -78,14 +48,13 @@ class Background {
       std::istringstream(status.substr(end + 1)) >> state >> parent;
       const bool is_worker =
           read_text(entry.path() / "cmdline").find("worker") != std::string::npos;
-      if (parent == pid_ && state != 'Z' && is_worker) children.push_back(std::stoi(name));
+      if (parent == child_->pid() && state != 'Z' && is_worker) children.push_back(std::stoi(name));
     }
     return children;
   }
 
  private:
-  pid_t pid_ = -1;
-  int exit_code_ = -1;
+  std::optional<ChildProcess> child_;
 };
 
 /// Waits until it holds. False when the program has ended before.

@@ -44,10 +44,13 @@ class Program : public ::testing::Test {
   /// Runs in root_, without what the user's own configuration says; `before` is shell text in front
   /// of the program.
   Result run(const std::string& arguments, const std::string& before = "") const {
+    return execute(before + " '" + program_ + "' " + arguments);
+  }
+  /// The same of any command of the shell.
+  Result execute(const std::string& line) const {
     const std::string command = "cd '" + root_.string() + "' && XDG_CONFIG_HOME='" + log("config") +
-                                "' && export XDG_CONFIG_HOME && { " + before + " '" + program_ +
-                                "' " + arguments + "; } > '" + log("out") + "' 2> '" + log("err") +
-                                "' < /dev/null";
+                                "' && export XDG_CONFIG_HOME && { " + line + "; } > '" +
+                                log("out") + "' 2> '" + log("err") + "' < /dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(log("out")), read(log("err"))};
   }

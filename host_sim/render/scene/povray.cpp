@@ -10,8 +10,8 @@
 #include <optional>
 #include <system_error>
 
+#include "host_sim/core/child_process.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/render/scene/child_process.h"
 
 namespace screed {
 namespace {
@@ -107,21 +107,27 @@ bool PovrayJob::render(int width_px, int height_px, const TaskProgress& progress
   constexpr int kWait_ms = 20;
   // In the scene's own folder: POV-Ray may be set up to touch no files elsewhere. +V: it tells the
   // pixels that are done.
-  ChildProcess povray({"povray", "+I" + name_with(".pov"), "+O" + picture_.filename().string(),
-                       "+W" + std::to_string(width_px), "+H" + std::to_string(height_px),
-                       picture_.extension() == ".jpg" ? "+FJ" : "+FN", "+A0.1", "+AM2", "+R3", "-D",
-                       "-GA", "+GF", "+V"},
-                      folder_);
+  ChildProcess povray(
+      {.words = {"povray", "+I" + name_with(".pov"), "+O" + picture_.filename().string(),
+                 "+W" + std::to_string(width_px), "+H" + std::to_string(height_px),
+                 picture_.extension() == ".jpg" ? "+FJ" : "+FN", "+A0.1", "+AM2", "+R3", "-D",
+                 "-GA", "+GF", "+V"},
+       .folder = folder_,
+       .errors_are_read = true});
   if (!povray.found()) return false;
   PovrayMessages messages;
   const std::string task = "rendering " + picture_.filename().string();
   std::optional<int> status;
   while (!status.has_value()) {
     report_progress(progress, task, messages.share());
-    messages.add(povray.messages(kWait_ms));
+    std::string text;
+    povray.receive(text, kWait_ms);
+    messages.add(text);
     status = povray.ended();
   }
-  messages.add(povray.messages(0) + "\n");
+  std::string rest;
+  povray.receive(rest);
+  messages.add(rest + "\n");
   if (*status != 0) {
     throw RunError("povray could not render " + scene().string() +
                    (messages.complaint().empty() ? "" : ": " + messages.complaint()));

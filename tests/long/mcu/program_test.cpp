@@ -1,11 +1,8 @@
 // `screed parity` and `screed sim --hal mcu` as a user meets them.
 // Long: simavr executes every instruction of the image, some 16 million a second of driving.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -15,51 +12,20 @@
 #include "host_sim/run/experiment/board_table.h"
 #include "paths.h"
 #include "tests/mcu/images.h"
+#include "tests/sitl/program.h"
 #include "tests/sitl/terminal.h"
 
 namespace screed::mcu {
 namespace {
 
-struct Result {
-  int exit_code;
-  std::string out;
-  std::string err;
-};
+using testing::Result;
 
-class McuProgram : public ::testing::Test {
+class McuProgram : public testing::Program {
  protected:
-  void SetUp() override {
-    const char* program = std::getenv("SCREED_PROGRAM");
-    ASSERT_NE(program, nullptr)
-        << "SCREED_PROGRAM names the program under test; `make test` sets it";
-    program_ = program;
-    root_ = std::filesystem::temp_directory_path() /
-            ("screed-mcu-" + std::to_string(getpid()) + "-" +
-             ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(root_);
-    std::filesystem::create_directories(root_);
-  }
-  void TearDown() override { std::filesystem::remove_all(root_); }
-
-  Result run(const std::string& arguments) const {
-    const std::string out = (root_ / "stdout").string();
-    const std::string err = (root_ / "stderr").string();
-    const std::string command = "cd '" + root_.string() + "' && '" + program_ + "' " + arguments +
-                                " > '" + out + "' 2> '" + err + "' < /dev/null";
-    const int status = std::system(command.c_str());
-    const auto text = [](const std::string& path) {
-      std::ifstream file(path);
-      return std::string(std::istreambuf_iterator<char>(file), {});
-    };
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text(out), text(err)};
-  }
   static std::string first_drive() {
     return std::string("'") + kDataFolder + "/experiments/first_drive.ini'";
   }
   static std::string image() { return std::string(" --elf '") + kScreedImage + "'"; }
-
-  std::string program_;
-  std::filesystem::path root_;
 };
 
 TEST_F(McuProgram, ParityOfAShortHillSensing) {

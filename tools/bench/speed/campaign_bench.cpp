@@ -3,7 +3,6 @@
 // SCREED_PROGRAM, which `make bench` sets.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include <iterator>
 #include <string>
 
+#include "host_sim/core/child_process.h"
 #include "tools/bench/require.h"
 
 namespace screed {
@@ -59,15 +59,10 @@ void write_campaign(const Ground& ground, const fs::path& file) {
 
 /// Whether the campaign in this folder ended with all runs done.
 bool run_campaign_of(const fs::path& folder, const char* program) {
-  const pid_t child = fork();
-  if (child == 0) {
-    if (chdir(folder.c_str()) != 0 || std::freopen("/dev/null", "w", stdout) == nullptr) _exit(1);
-    execl(program, program, "campaign", "run", "bench.ini", "--workers", "1", "--quiet", "--out",
-          "out", nullptr);
-    _exit(1);
-  }
-  int status = 1;
-  return child > 0 && waitpid(child, &status, 0) == child && status == 0;
+  return ChildProcess({.words = {program, "campaign", "run", "bench.ini", "--workers", "1",
+                                 "--quiet", "--out", "out"},
+                       .folder = folder})
+             .wait() == 0;
 }
 
 void campaign(benchmark::State& state) {

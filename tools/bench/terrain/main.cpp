@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "host_sim/core/atomic_file.h"
+#include "host_sim/core/child_process.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
 #include "host_sim/render/chart/line_chart.h"
@@ -66,14 +66,9 @@ Measurement measure_in_child(const Case& bench, const std::string& bed, const Op
                         std::to_string(bench.threads);
   if (bench.load == terrain_bench::Load::kAllAwake) command += " --all-awake";
   for (const std::string& text : bench.overrides) command += " --set '" + text + "'";
-  std::FILE* child = popen(command.c_str(), "r");
-  if (child == nullptr) throw RunError("no child process can be started");
-  std::string said;
-  std::array<char, 512> part{};
-  while (std::fgets(part.data(), part.size(), child) != nullptr) said += part.data();
-  const int status = pclose(child);
-  if (status != 0) throw RunError("a case failed: " + command);
-  const auto json = Json::parse(said);
+  const ShellOutput child = shell_output(command);
+  if (child.exit_code != 0) throw RunError("a case failed: " + command);
+  const auto json = Json::parse(child.text);
   const auto number = [&](const char* name) { return json.at(name).get<double>(); };
   return Measurement{json.at("frames").get<std::uint64_t>(),
                      number("wall_ms"),

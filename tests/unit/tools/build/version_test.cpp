@@ -1,10 +1,10 @@
 // tools/build/version.sh: number, commit and date, with git, without it, and in an archive.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <regex>
 
+#include "host_sim/core/child_process.h"
 #include "tests/temp_folder.h"
 
 namespace screed {
@@ -26,15 +26,14 @@ class Version : public ::testing::Test {
 
   /// Runs a shell line in a folder, without the user's own git configuration; what it prints.
   std::string say(const std::string& line, const fs::path& folder, int expected_status = 0) const {
-    const fs::path out = folder_.path() / "said";
     const std::string git =
         "export GIT_CONFIG_GLOBAL=/dev/null GIT_CONFIG_NOSYSTEM=1 GIT_AUTHOR_NAME=a "
         "GIT_AUTHOR_EMAIL=a@b GIT_COMMITTER_NAME=a GIT_COMMITTER_EMAIL=a@b "
         "GIT_COMMITTER_DATE='2026-03-04T12:00:00+00:00'; ";
-    const std::string command =
-        git + "cd '" + folder.string() + "' && { " + line + "; } > '" + out.string() + "' 2>&1";
-    EXPECT_EQ(std::system(command.c_str()) == 0, expected_status == 0) << read_text(out);
-    return read_text(out);
+    const ShellOutput said =
+        shell_output(git + "cd '" + folder.string() + "' && { " + line + "; } 2>&1");
+    EXPECT_EQ(said.exit_code == 0, expected_status == 0) << said.text;
+    return said.text;
   }
   void commit() const { say("git init -q . && git add -A && git commit -q -m first", root_); }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/core/child_process.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/hdf5_handle.h"
 #include "host_sim/core/record.h"
@@ -115,15 +116,9 @@ void expect_rows(const SessionReader& reader, const std::vector<Row>& expected) 
 
 /// Standard output of a program; fails the test when it does not succeed.
 inline std::string output_of(const std::string& command) {
-  std::string text;
-  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return {};
-  std::array<char, 4096> block{};
-  for (std::size_t n = 0; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;) {
-    text.append(block.data(), n);
-  }
-  EXPECT_EQ(pclose(pipe), 0) << command << " (package hdf5-tools)\n" << text;
-  return text;
+  const ShellOutput output = shell_output(command + " 2>&1");
+  EXPECT_EQ(output.exit_code, 0) << command << " (package hdf5-tools)\n" << output.text;
+  return output.text;
 }
 
 template <class Error>
