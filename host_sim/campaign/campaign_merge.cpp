@@ -164,7 +164,7 @@ ValueTable curve_table(const CampaignPlan& plan, const ResultIndex& results) {
 }
 
 std::map<std::string, size_t> merge_results(const CampaignPlan& plan, const ResultIndex& results,
-                                            const CampaignFolder& folder) {
+                                            const TaskFolder& folder) {
   Tables tables = tables_of(plan, results);
   write_hdf5(plan, count_results(plan, results), tables, folder.path / "campaign.h5");
   write_file(folder.path / "runs.csv", tables.runs.csv());

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/campaign/campaign_folder.h"
 #include "host_sim/campaign/campaign_plan.h"
 #include "host_sim/campaign/value_table.h"
 #include "host_sim/engine/result_store.h"
+#include "host_sim/engine/task_folder.h"
 
 namespace screed {
 
@@ -46,6 +46,6 @@ ValueTable curve_table(const CampaignPlan& plan, const ResultIndex& results);
 /// Answers how many runs each arithmetic made (session_layout.h). Throws RunError when a file
 /// cannot be written.
 std::map<std::string, size_t> merge_results(const CampaignPlan& plan, const ResultIndex& results,
-                                            const CampaignFolder& folder);
+                                            const TaskFolder& folder);
 
 }  // namespace screed

@@ -253,7 +253,7 @@ std::optional<std::string> link_of(const std::filesystem::path& kept,
   return fs::proximate(fs::exists(page) ? page : kept, base.empty() ? "." : base).generic_string();
 }
 
-Json runs_json(const CampaignPlan& plan, const CampaignFolder& folder,
+Json runs_json(const CampaignPlan& plan, const TaskFolder& folder,
                const std::filesystem::path& base, const std::vector<std::string>& outcomes,
                const std::vector<std::string>& names) {
   Json list = Json::array();
@@ -320,7 +320,7 @@ std::size_t first_metric(const std::vector<Metric>& metrics,
 
 std::string campaign_page(const CampaignPlan& plan, const CampaignCount& count,
                           const ValueTable& runs, const ValueTable& curves,
-                          const CampaignFolder& folder, const CampaignPageOptions& options) {
+                          const TaskFolder& folder, const CampaignPageOptions& options) {
   if (options.baseline >= plan.cells.size()) {
     throw InputError("--baseline " + std::to_string(options.baseline) +
                      ": the campaign has cells 0 to " + std::to_string(plan.cells.size() - 1));

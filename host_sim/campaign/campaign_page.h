@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "host_sim/campaign/campaign_folder.h"
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/campaign/campaign_plan.h"
 #include "host_sim/campaign/value_table.h"
+#include "host_sim/engine/task_folder.h"
 
 namespace screed {
 
@@ -26,6 +26,6 @@ struct CampaignPageOptions {
 /// not have, and when there is no built page.
 std::string campaign_page(const CampaignPlan& plan, const CampaignCount& count,
                           const ValueTable& runs, const ValueTable& curves,
-                          const CampaignFolder& folder, const CampaignPageOptions& options);
+                          const TaskFolder& folder, const CampaignPageOptions& options);
 
 }  // namespace screed

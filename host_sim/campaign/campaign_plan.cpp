@@ -10,15 +10,14 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
 #include "host_sim/core/name_list.h"
-#include "host_sim/engine/file_hash.h"
+#include "host_sim/engine/task_folder.h"
 
 namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPlanFormat = "screed-campaign";
-constexpr int kPlanFormatVersion = 1;
+constexpr PlanFormat kPlanFormat{"screed-campaign", 1, "campaign"};
 /// Part of every identity: raised when the same experiment is to count as another run.
 constexpr const char* kIdentityRules = "screed campaign run 1";
 
@@ -261,8 +260,8 @@ std::string plan_text(const CampaignPlan& plan) {
   Json factors = Json::array();
   for (const CampaignFactor& factor : plan.factors) factors.push_back(json_of(factor));
   const Json json = {
-      {"format", kPlanFormat},
-      {"format_version", kPlanFormatVersion},
+      {"format", kPlanFormat.format},
+      {"format_version", kPlanFormat.version},
       {"version", plan.version},
       {"settings", json_of(plan.settings)},
       {"experiment",
@@ -276,15 +275,8 @@ std::string plan_text(const CampaignPlan& plan) {
 }
 
 CampaignPlan read_plan(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file.string() + ": no such file: this is no folder of a campaign");
-  const Json json = Json::parse_or_null(stream);
-  if (!json.is_object() || json.value("format", "") != kPlanFormat)
-    throw InputError(file.string() + ": is not the plan of a campaign, or is damaged");
-  if (json.value("format_version", 0) != kPlanFormatVersion)
-    throw InputError(file.string() + ": is of another version of Screed");
   CampaignPlan plan;
-  try {
+  read_plan_file(file, kPlanFormat, [&plan](const Json& json) {
     plan.version = json.at("version").get<std::string>();
     plan.settings = settings_of(json.at("settings"));
     plan.experiment.path = json.at("experiment").at("path").get<std::string>();
@@ -294,9 +286,7 @@ CampaignPlan read_plan(const fs::path& file) {
     plan.cells = json.at("cells").get<std::vector<std::vector<std::string>>>();
     plan.durations_s = json.at("durations_s").get<std::vector<double>>();
     plan.ids = json.at("ids").get<std::vector<std::string>>();
-  } catch (const JsonError&) {
-    throw InputError(file.string() + ": the plan of the campaign is damaged");
-  }
+  });
   if (plan.settings.seeds.empty() || plan.ids.size() != plan.run_count() ||
       plan.durations_s.size() != plan.cells.size())
     throw InputError(file.string() + ": the plan of the campaign is damaged");

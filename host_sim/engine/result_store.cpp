@@ -14,7 +14,7 @@
 
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/engine/host.h"
+#include "host_sim/engine/task_folder.h"
 
 namespace screed {
 namespace {

@@ -6,19 +6,22 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "host_sim/engine/task_folder.h"
 
 namespace screed {
 
 /// Where tasks are executed, and by whom.
 struct EngineOptions {
-  std::filesystem::path results;              ///< folder of the result files
-  std::filesystem::path log;                  ///< what workers say on standard error
+  TaskFolder folder;                          ///< of it: results, and workers' standard error
   std::vector<std::string> worker_arguments;  ///< of the program, for a worker (task_worker.h)
-  const std::atomic<bool>* stop = nullptr;
+  const std::atomic<bool>* stop = nullptr;    ///< becomes true: kill all workers and return
 };
 
 /// What the engine has to know of tasks, by their numbers.
@@ -60,5 +63,37 @@ struct EngineOutcome {
 /// A task that crashes or passes its limit is tried again, one that fails is not. Throws RunError
 /// when results cannot be stored, InputError when those that are stored contradict each other.
 EngineOutcome run_tasks(const EngineOptions& options, const EngineJob& job);
+
+// Below it: jobs for a number of workers. Each gets one at a time; one that crashes or hangs costs
+// its job and is replaced.
+
+/// The line that a worker is sent, which it answers with one line.
+struct PoolJob {
+  size_t number = 0;
+  std::string request;
+  double limit_s = 0.0;  ///< after this time of the clock its worker is killed
+};
+
+/// All are called by the thread that runs the pool.
+struct PoolHandler {
+  /// The next job; nothing while there is none. Asked again after each of the two below.
+  std::function<std::optional<PoolJob>()> next;
+  std::function<void(const PoolJob&, const std::string& answer)> answered;
+  /// Its worker ended, or was killed at the limit: why, in words.
+  std::function<void(const PoolJob&, const std::string& why)> lost;
+  /// Now and then.
+  std::function<void()> tick;
+};
+
+/// Returns when next() gives nothing and no worker has a job, or when told to stop. Whatever a
+/// callback throws ends the workers and passes. Throws RunError when a worker cannot be started.
+void run_pool(const EngineOptions& options, int workers, const PoolHandler& handler);
+
+/// Of `workers` those for whom there is memory now, at least one; memory_mb for each, 0: unknown.
+int workers_that_fit(double memory_mb, int workers);
+/// Memory that is available now, MB; nothing where it cannot be known.
+std::optional<double> available_memory_mb();
+/// Processors that this process may use.
+int usable_processors();
 
 }  // namespace screed

@@ -11,8 +11,8 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
-#include "host_sim/engine/host.h"
 #include "host_sim/engine/result_store.h"
+#include "host_sim/engine/task_folder.h"
 
 namespace screed {
 namespace {

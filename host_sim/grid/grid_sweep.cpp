@@ -1,25 +1,248 @@
-// Sweeps: their runs as tasks of the engine, and the table of their results.
+// A sweep as tasks of the engine: its plan, what a worker does, and the table of results.
 #include "host_sim/grid/grid_sweep.h"
 
 #include <algorithm>
+#include <array>
+#include <cinttypes>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
+#include <istream>
 #include <iterator>
 #include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
+#include <vector>
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/engine/folder_lock.h"
+#include "host_sim/core/json.h"
 #include "host_sim/engine/result_store.h"
-#include "host_sim/engine/scratch_folder.h"
-#include "host_sim/engine/worker_pool.h"
-#include "host_sim/grid/grid_sweep_worker.h"
+#include "host_sim/engine/task_engine.h"
+#include "host_sim/engine/task_folder.h"
+#include "host_sim/engine/task_worker.h"
+#include "host_sim/grid/grid_run.h"
 
 namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+
+// ---- the plan
+// -------------------------------------------------------------------------------------
+
+constexpr PlanFormat kPlanFormat{"screed-grid-sweep", 1, "sweep"};
+/// Part of every identity: raised when the same configuration is to count as another run.
+constexpr const char* kIdentityRules = "screed grid run 1";
+
+/// Every value of a configuration with its name: `visit(name, value)`.
+template <class Config, class Visit>
+void for_each_value(Config& config, Visit visit) {
+  visit("algorithm", config.algorithm);
+  visit("seed", config.seed);
+  visit("agents", config.agents);
+  visit("max_cycles", config.max_cycles);
+  visit("stop", config.stop.measure);
+  visit("epsilon", config.stop.epsilon);
+  visit("width", config.noise.width);
+  visit("height", config.noise.height);
+  visit("mean", config.noise.mean);
+  visit("amplitude", config.noise.amplitude);
+  visit("lattice", config.noise.lattice);
+  visit("border", config.noise.border);
+  visit("image", config.image);
+  visit("image_width", config.image_width);
+  visit("image_height", config.image_height);
+  visit("white", config.white);
+  visit("image_mean", config.image_mean);
+  visit("p_sense", config.p_sense);
+  visit("p_turn", config.p_turn);
+  visit("p_pick_up", config.p_pick_up);
+  visit("p_deposit", config.p_deposit);
+  visit("k", config.k);
+  visit("memory", config.memory);
+  visit("fitness_threshold", config.fitness_threshold);
+  visit("chromosomes", config.chromosomes);
+  visit("repetitions", config.repetitions);
+  visit("fitness_base", config.fitness_base);
+  visit("averaging", config.averaging);
+  visit("dead_band", config.dead_band);
+  visit("patience", config.patience);
+  visit("hold_out", config.hold_out);
+  visit("follows_slope", config.follows_slope);
+  visit("turns_back", config.turns_back);
+}
+
+template <class Value>
+Json json_of(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return static_cast<int>(value);
+  } else {
+    return value;
+  }
+}
+Json json_of(const fs::path& path) {
+  return path.string();
+}
+template <class Value>
+Json json_of(const std::optional<Value>& value) {
+  return value.has_value() ? Json(*value) : Json();
+}
+
+template <class Value>
+void take(const Json& json, Value& value) {
+  value = json.get<Value>();
+}
+void take(const Json& json, fs::path& path) {
+  path = json.get<std::string>();
+}
+template <class Value>
+void take(const Json& json, std::optional<Value>& value) {
+  if (!json.is_null()) value = json.get<Value>();
+}
+
+Json json_of_config(const GridConfig& config) {
+  Json json;
+  for_each_value(config,
+                 [&json](const char* name, const auto& value) { json[name] = json_of(value); });
+  return json;
+}
+
+GridConfig config_of_json(const Json& json) {
+  GridConfig config;
+  for_each_value(config, [&json](const char* name, auto& value) { take(json.at(name), value); });
+  return config;
+}
+
+}  // namespace
+
+GridConfig SweepPlan::config_of(size_t task) const {
+  GridConfig config = points[point_of(task)];
+  config.seed += run_of(task);
+  return config;
+}
+
+SweepPlan make_sweep_plan(const std::vector<SweepPoint>& points, const std::string& version) {
+  SweepPlan plan;
+  plan.version = version;
+  for (const SweepPoint& point : points) {
+    check(point.config);
+    // What an image does not allow shows when its terrain is made.
+    if (!point.config.image.empty()) static_cast<void>(GridRun(point.config));
+    plan.points.push_back(with_defaults(point.config));
+    plan.ids.push_back(identity_of(point.config, version));
+  }
+  return plan;
+}
+
+std::string identity_of(const GridConfig& config, const std::string& version) {
+  ContentHash hash;
+  hash.add(kIdentityRules);
+  hash.add(version);
+  try {
+    hash.add(json_of_config(with_defaults(config)).dump());
+  } catch (const JsonError&) {
+    throw InputError("grid: terrain = " + config.image.string() +
+                     "; many runs need a name of the image in UTF-8");
+  }
+  hash.add(config.image.empty() ? "" : file_hash(config.image));
+  return hash.hex();
+}
+
+std::string sweep_plan_text(const SweepPlan& plan) {
+  Json points = Json::array();
+  for (size_t i = 0; i < plan.points.size(); ++i)
+    points.push_back({{"id", plan.ids[i]}, {"config", json_of_config(plan.points[i])}});
+  const Json json = {{"format", kPlanFormat.format},
+                     {"format_version", kPlanFormat.version},
+                     {"version", plan.version},
+                     {"points", points}};
+  return json.dump(1) + "\n";
+}
+
+SweepPlan read_sweep_plan(const fs::path& file) {
+  SweepPlan plan;
+  read_plan_file(file, kPlanFormat, [&plan](const Json& json) {
+    plan.version = json.at("version").get<std::string>();
+    for (const Json& point : json.at("points")) {
+      plan.ids.push_back(point.at("id").get<std::string>());
+      plan.points.push_back(config_of_json(point.at("config")));
+    }
+  });
+  if (plan.points.empty()) throw InputError(file.string() + ": the plan has no points");
+  return plan;
+}
+
+// ---- the worker
+// -----------------------------------------------------------------------------------
+
+namespace {
+
+/// JSON. A library for it takes longer than handing over and storing together.
+constexpr char kResultForm[] =
+    "{\"level\":%d,\"cycles\":%" SCNu64 ",\"units\":%" SCNu64 ",\"least_units\":%" SCNu64
+    ",\"straight_steps\":%" SCNu64 ",\"diagonal_steps\":%" SCNu64 "}";
+
+/// The runs of a plan, executed in this process.
+class SweepExecutor : public TaskExecutor {
+ public:
+  explicit SweepExecutor(const TaskFolder& folder)
+      : plan_(read_sweep_plan(folder.plan())), is_checked_(plan_.points.size()) {}
+
+  size_t count() const override { return plan_.points.size() * kMaxSweepRuns; }
+  std::string id(size_t task) const override {
+    return plan_.id_of(plan_.point_of(task), plan_.run_of(task));
+  }
+  std::string execute(size_t task) override {
+    check_identity(plan_.point_of(task));
+    return result_text(run_grid(plan_.config_of(task)));
+  }
+
+ private:
+  /// Nothing has changed since the plan was made: neither the image nor the program.
+  void check_identity(size_t point) {
+    if (is_checked_[point]) return;
+    if (identity_of(plan_.points[point], plan_.version) != plan_.ids[point])
+      throw InputError("the image of the terrain or the program has changed meanwhile");
+    is_checked_[point] = true;
+  }
+
+  SweepPlan plan_;
+  std::vector<bool> is_checked_;
+};
+
+}  // namespace
+
+std::string result_text(const GridResult& result) {
+  std::array<char, 256> text{};
+  const int size =
+      std::snprintf(text.data(), text.size(), kResultForm, result.level ? 1 : 0, result.cycles,
+                    result.units, result.min_units, result.straight, result.diagonal);
+  return {text.data(), static_cast<size_t>(size)};
+}
+
+GridResult parse_result(const std::string& text) {
+  GridResult result;
+  int level = 0;
+  if (std::sscanf(text.c_str(), kResultForm, &level, &result.cycles, &result.units,
+                  &result.min_units, &result.straight, &result.diagonal) != 6) {
+    throw RunError("a stored result is not that of a run of the grid world: " + text);
+  }
+  result.level = level != 0;
+  return result;
+}
+
+void serve_sweep(const TaskFolder& folder, const std::string& program_version,
+                 std::istream& requests, const std::function<void(const std::string&)>& answer) {
+  SweepExecutor executor(folder);
+  serve_tasks(executor, folder.results(), {{"version", program_version}}, requests, answer);
+}
+
+// ---- the sweep
+// ------------------------------------------------------------------------------------
+
 namespace {
 
 /// By point, then run.
@@ -44,8 +267,6 @@ void check_options(const SweepOptions& options) {
                      "; allowed is 0 (all cores) to 1024");
   }
 }
-
-// ---- the table ---------------------------------------------------------------------------------
 
 /// Equal for sweeps whose runs may stand in one file; the number of runs may grow.
 std::string first_lines(const std::vector<SweepPoint>& points) {
@@ -76,7 +297,7 @@ std::string table_text(const std::vector<SweepPoint>& points, const Results& res
 
 /// Nothing of something else is overwritten, and nothing of this sweep that holds more than the
 /// `runs` of the new file.
-void check_table(const std::filesystem::path& path, const std::string& head, size_t runs) {
+void check_table(const fs::path& path, const std::string& head, size_t runs) {
   std::ifstream file(path, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(file)), {});
   if (head.starts_with(text)) return;  // none, or one that was hardly begun
@@ -91,8 +312,6 @@ void check_table(const std::filesystem::path& path, const std::string& head, siz
                      "folder or remove the file");
   }
 }
-
-// ---- results -----------------------------------------------------------------------------------
 
 /// The number of runs of a point that are stored without a gap, or that are asked for.
 size_t runs_of_table(const SweepPlan& plan, const ResultIndex& index, size_t point, size_t runs) {
@@ -116,7 +335,7 @@ Results stored_results(const SweepPlan& plan, const ResultIndex& index, size_t r
 void check_stored(const std::vector<SweepPoint>& points, const SweepPlan& plan,
                   const SweepOptions& options) {
   if (options.folder.empty()) return;
-  const ResultIndex index(SweepFolder{options.folder}.results());
+  const ResultIndex index(TaskFolder{options.folder}.results());
   size_t rows = 0;
   for (size_t point = 0; point < points.size(); ++point)
     rows += runs_of_table(plan, index, point, static_cast<size_t>(options.runs));
@@ -128,15 +347,12 @@ void check_stored(const std::vector<SweepPoint>& points, const SweepPlan& plan,
     options.note(note);
 }
 
-// ---- execution ---------------------------------------------------------------------------------
-
 EngineOutcome execute(const std::vector<SweepPoint>& points, const SweepPlan& plan,
-                      const SweepOptions& options, const SweepFolder& folder) {
+                      const SweepOptions& options, const TaskFolder& folder) {
   EngineOptions engine;
-  engine.results = folder.results();
-  engine.log = folder.log();
+  engine.folder = folder;
   engine.worker_arguments = options.worker_arguments;
-  engine.worker_arguments.push_back(std::filesystem::absolute(folder.path).string());
+  engine.worker_arguments.push_back(fs::absolute(folder.path).string());
   engine.stop = options.stop;
 
   EngineJob job;
@@ -173,7 +389,7 @@ SweepResult run_sweep(const std::vector<SweepPoint>& points, const SweepOptions&
   check_stored(points, plan, options);
 
   std::optional<ScratchFolder> scratch;
-  SweepFolder folder{options.folder};
+  TaskFolder folder{options.folder};
   if (folder.path.empty()) folder.path = scratch.emplace("grid-sweep").path();
   const FolderLock lock(folder.path, "another sweep is writing to it");
   write_file(folder.plan(), sweep_plan_text(plan));

@@ -134,7 +134,7 @@ std::string script_text(const SubmitArguments& arguments, const ChosenCampaign& 
 }
 
 /// The first name that is free: 0001, 0002, ...
-fs::path new_submission(const CampaignFolder& folder) {
+fs::path new_submission(const TaskFolder& folder) {
   for (int number = 1;; ++number) {
     std::error_code error;
     fs::path path = folder.slurm() / filled("{:04.0f}", number);
@@ -145,7 +145,7 @@ fs::path new_submission(const CampaignFolder& folder) {
 }
 
 /// Two jobs would execute the same runs.
-void refuse_while_active(const CampaignFolder& folder) {
+void refuse_while_active(const TaskFolder& folder) {
   for (const SlurmJob& job : slurm_jobs(folder)) {
     const int tasks = slurm::active_tasks(job.number);
     if (tasks == 0) continue;

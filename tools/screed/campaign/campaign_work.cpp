@@ -22,8 +22,8 @@
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
-#include "host_sim/engine/host.h"
-#include "host_sim/engine/worker_pool.h"
+#include "host_sim/engine/task_engine.h"
+#include "host_sim/engine/task_folder.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/progress_bar.h"
@@ -43,8 +43,7 @@ Json trial_key(const CampaignPlan& plan) {
   return {{"first", plan.ids.front()}, {"last", plan.ids.back()}};
 }
 
-void keep_trial(const CampaignPlan& plan, const CampaignTrial& trial,
-                const CampaignFolder& folder) {
+void keep_trial(const CampaignPlan& plan, const CampaignTrial& trial, const TaskFolder& folder) {
   Json costs = Json::array();
   for (const RunCost& cost : trial.costs) {
     costs.push_back({{"setup_s", cost.setup_s},
@@ -69,7 +68,7 @@ ChosenCampaign choose_campaign(const CampaignChoice& choice, const std::string& 
   std::error_code error;
   if (fs::is_directory(choice.file, error)) {
     chosen.folder.path = choice.out.value_or(choice.file);
-    chosen.plan = read_plan(CampaignFolder{choice.file}.plan());
+    chosen.plan = read_plan(TaskFolder{choice.file}.plan());
     if (chosen.plan.version != counted) {
       throw InputError(choice.file + ": is a campaign of version " + chosen.plan.version +
                        ", this is " + counted +
@@ -87,10 +86,10 @@ ChosenCampaign choose_campaign(const CampaignChoice& choice, const std::string& 
   return chosen;
 }
 
-CampaignLock::CampaignLock(const CampaignFolder& folder)
+CampaignLock::CampaignLock(const TaskFolder& folder)
     : FolderLock(folder.path, "another `screed campaign run` works on this campaign") {}
 
-void save_plan(const CampaignPlan& plan, const CampaignFolder& folder) {
+void save_plan(const CampaignPlan& plan, const TaskFolder& folder) {
   make_folder(folder.path);
   const std::string text = plan_text(plan);
   if (read_text(folder.plan()) != text) write_file(folder.plan(), text);
@@ -104,7 +103,7 @@ void note_odd_results(const CampaignPlan& plan, const ResultIndex& results) {
 }
 
 void merge_and_note(const CampaignPlan& plan, const ResultIndex& results,
-                    const CampaignFolder& folder) {
+                    const TaskFolder& folder) {
   const std::map<std::string, size_t> arithmetics = merge_results(plan, results, folder);
   if (arithmetics.size() < 2) return;
   std::string list;
@@ -114,16 +113,11 @@ void merge_and_note(const CampaignPlan& plan, const ResultIndex& results,
             << ": runs of several arithmetics, whose bits differ: " << list << "\n";
 }
 
-EngineOptions engine_options(const CampaignFolder& folder) {
-  EngineOptions options;
-  options.results = folder.results();
-  options.log = folder.log();
-  options.worker_arguments = {"campaign", "worker", folder.path.string()};
-  options.stop = &interrupted();
-  return options;
+EngineOptions engine_options(const TaskFolder& folder) {
+  return {folder, {"campaign", "worker", folder.path.string()}, &interrupted()};
 }
 
-std::optional<CampaignTrial> kept_trial(const CampaignPlan& plan, const CampaignFolder& folder) {
+std::optional<CampaignTrial> kept_trial(const CampaignPlan& plan, const TaskFolder& folder) {
   const Json json = Json::parse_or_null(read_text(folder.trial()));
   if (!json.is_object() || json.value("key", Json()) != trial_key(plan)) return std::nullopt;
   CampaignTrial trial;
@@ -136,7 +130,7 @@ std::optional<CampaignTrial> kept_trial(const CampaignPlan& plan, const Campaign
   return trial;
 }
 
-CampaignTrial find_trial(const CampaignPlan& plan, const CampaignFolder& folder, bool quiet) {
+CampaignTrial find_trial(const CampaignPlan& plan, const TaskFolder& folder, bool quiet) {
   std::optional<CampaignTrial> kept = kept_trial(plan, folder);
   if (kept.has_value() && kept->host == host_name()) return std::move(*kept);
   if (!quiet) std::cerr << "trying some runs, for their time and memory ...\n";
@@ -200,7 +194,7 @@ EngineOutcome execute(const ChosenCampaign& campaign, CampaignJob job, bool quie
   }
 }
 
-std::vector<SlurmJob> slurm_jobs(const CampaignFolder& folder) {
+std::vector<SlurmJob> slurm_jobs(const TaskFolder& folder) {
   std::vector<SlurmJob> jobs;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder.slurm(), error)) {

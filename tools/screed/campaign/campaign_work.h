@@ -7,11 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/campaign/campaign_engine.h"
-#include "host_sim/campaign/campaign_folder.h"
 #include "host_sim/campaign/campaign_plan.h"
-#include "host_sim/engine/folder_lock.h"
+#include "host_sim/campaign/campaign_run.h"
 #include "host_sim/engine/result_store.h"
+#include "host_sim/engine/task_folder.h"
 
 namespace screed {
 
@@ -24,7 +23,7 @@ struct CampaignChoice {
 
 struct ChosenCampaign {
   CampaignPlan plan;
-  CampaignFolder folder;
+  TaskFolder folder;
 };
 
 /// Reads the file, or the plan in the folder, which must be of this version. Notes of the
@@ -35,26 +34,25 @@ ChosenCampaign choose_campaign(const CampaignChoice& choice, const std::string& 
 class CampaignLock : public FolderLock {
  public:
   /// Throws InputError when another process has it, RunError when the folder cannot be written.
-  explicit CampaignLock(const CampaignFolder& folder);
+  explicit CampaignLock(const TaskFolder& folder);
 };
 
 /// Makes the folder and writes the plan where it differs from what is there. Throws RunError.
-void save_plan(const CampaignPlan& plan, const CampaignFolder& folder);
+void save_plan(const CampaignPlan& plan, const TaskFolder& folder);
 
 /// Says on standard error what is odd about the stored results: damaged lines, results of another
 /// version or other values.
 void note_odd_results(const CampaignPlan& plan, const ResultIndex& results);
 /// merge_results(). Says on standard error when the runs are of several arithmetics.
-void merge_and_note(const CampaignPlan& plan, const ResultIndex& results,
-                    const CampaignFolder& folder);
+void merge_and_note(const CampaignPlan& plan, const ResultIndex& results, const TaskFolder& folder);
 
-EngineOptions engine_options(const CampaignFolder& folder);
+EngineOptions engine_options(const TaskFolder& folder);
 
 /// The trial of this plan on this machine: the one in the folder, or a new one, which is kept
 /// there. Shows that it works on standard error unless `quiet`.
-CampaignTrial find_trial(const CampaignPlan& plan, const CampaignFolder& folder, bool quiet);
+CampaignTrial find_trial(const CampaignPlan& plan, const TaskFolder& folder, bool quiet);
 /// The trial in the folder, of whatever machine; nothing without one.
-std::optional<CampaignTrial> kept_trial(const CampaignPlan& plan, const CampaignFolder& folder);
+std::optional<CampaignTrial> kept_trial(const CampaignPlan& plan, const TaskFolder& folder);
 
 /// All runs, on this machine alone: saves the plan, and tries some runs where their cost is not
 /// known.
@@ -74,7 +72,7 @@ struct SlurmJob {
   std::filesystem::path folder;
 };
 /// Of this campaign, the oldest first.
-std::vector<SlurmJob> slurm_jobs(const CampaignFolder& folder);
+std::vector<SlurmJob> slurm_jobs(const TaskFolder& folder);
 
 /// The runs of a shard, "FILE:LINE", lines counted from 0. Throws InputError.
 std::vector<size_t> read_shard(const std::string& text, const CampaignPlan& plan);

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/campaign/campaign_folder.h"
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/campaign/campaign_page.h"
 #include "host_sim/campaign/campaign_plan.h"
@@ -15,6 +14,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/figures.h"
 #include "host_sim/engine/result_store.h"
+#include "host_sim/engine/task_folder.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/report/run_page.h"
@@ -93,7 +93,7 @@ int report_run(const ReportOptions& options) {
   return write_page(out, text);
 }
 
-int report_campaign(const ReportOptions& options, const CampaignFolder& folder) {
+int report_campaign(const ReportOptions& options, const TaskFolder& folder) {
   const fs::path out = page_path(options, folder.path / "report.html");
   const CampaignPlan plan = read_plan(folder.plan());
   const ResultIndex results(folder.results());
@@ -113,7 +113,7 @@ int report_campaign(const ReportOptions& options, const CampaignFolder& folder) 
 }
 
 int run_report(const ReportOptions& options) {
-  const CampaignFolder campaign{options.of};
+  const TaskFolder campaign{options.of};
   return fs::exists(campaign.plan()) ? report_campaign(options, campaign) : report_run(options);
 }
 

@@ -16,7 +16,6 @@
 #include "host_sim/engine/task_worker.h"
 #include "host_sim/grid/grid_recording.h"
 #include "host_sim/grid/grid_sweep.h"
-#include "host_sim/grid/grid_sweep_worker.h"
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/ground_station/telemetry/csv_tables.h"
 #include "host_sim/ground_station/telemetry/mcap_file.h"
@@ -134,7 +133,7 @@ TEST_F(HalfWritten, TableOfASweepKeepsTheOneThatIsThere) {
   options.table = folder_ / "results.csv";
   options.runs = 80;
   const SweepPlan plan = make_sweep_plan(points, options.version);
-  const SweepFolder folder{folder_};
+  const TaskFolder folder{folder_};
   write_text(folder.plan(), sweep_plan_text(plan));
   std::vector<size_t> tasks(static_cast<size_t>(options.runs));
   std::iota(tasks.begin(), tasks.end(), size_t{0});

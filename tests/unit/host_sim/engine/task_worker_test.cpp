@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host_sim/engine/result_store.h"
-#include "host_sim/engine/worker_pool.h"
+#include "host_sim/engine/task_engine.h"
 #include "tests/temp_folder.h"
 
 namespace screed {

@@ -18,7 +18,6 @@
 #include "host_sim/grid/grid_figures.h"
 #include "host_sim/grid/grid_recording.h"
 #include "host_sim/grid/grid_sweep.h"
-#include "host_sim/grid/grid_sweep_worker.h"
 #include "host_sim/render/chart/line_chart.h"
 #include "tests/temp_folder.h"
 
@@ -53,7 +52,7 @@ SweepOptions options_of(const std::filesystem::path& folder, int runs) {
 /// What a worker would do: executes the first runs of each point.
 void serve(const std::filesystem::path& path, const std::vector<SweepPoint>& points, size_t runs,
            const std::string& version = "1.2.3") {
-  const SweepFolder folder{path};
+  const TaskFolder folder{path};
   std::filesystem::create_directories(path);
   write_text(folder.plan(), sweep_plan_text(make_sweep_plan(points, version)));
   std::vector<size_t> tasks(points.size() * runs);
@@ -226,7 +225,7 @@ TEST_F(GridSweep, AnImageMayNotChangeMeanwhile) {
   config.image_width = config.image_height = 8;
   SweepPlan plan = make_sweep_plan({{"image", 0.0, config}}, "1.2.3");
   plan.ids[0] = std::string(32, '0');  // as of other bytes
-  const SweepFolder folder{folder_ / "sweep"};
+  const TaskFolder folder{folder_ / "sweep"};
   std::filesystem::create_directories(folder.path);
   write_text(folder.plan(), sweep_plan_text(plan));
   std::istringstream requests(execute_request({0}, 1));

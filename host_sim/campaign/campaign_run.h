@@ -3,15 +3,39 @@
 #pragma once
 
 #include <functional>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host_sim/campaign/campaign_plan.h"
-#include "host_sim/campaign/campaign_worker.h"
 #include "host_sim/engine/task_engine.h"
+#include "host_sim/engine/task_folder.h"
+#include "host_sim/run/simulation/simulation.h"
 
 namespace screed {
+
+/// What a run costs on this machine, as a trial of it shows.
+struct RunCost {
+  double setup_s = 0.0;       ///< of the clock, until the first tick
+  double per_second_s = 0.0;  ///< of the clock, for a simulated second
+  double finish_s = 0.0;      ///< of the clock, after the last tick
+
+  double of(double simulated_s) const { return setup_s + per_second_s * simulated_s + finish_s; }
+};
+
+/// As a worker answers it, and back. Throws RunError for what is none.
+std::string cost_text(const RunCost& cost);
+RunCost parse_cost(const std::string& text);
+
+/// The options with which the runs of a world are made; version and board are set already.
+using OptionsOfWorld = std::function<SimulationOptions(const CampaignWorld&)>;
+
+/// The worker of a campaign (task_worker.h): answers requests until `requests` ends. Throws
+/// InputError when the folder has no plan.
+void serve_campaign(const TaskFolder& folder, const std::string& program_version,
+                    const OptionsOfWorld& options_of_world, std::istream& requests,
+                    const std::function<void(const std::string&)>& answer);
 
 /// What a trial of some runs has shown on this machine.
 struct CampaignTrial {

@@ -1,9 +1,8 @@
 // What a worker says of a trial, and what follows from it.
-#include "host_sim/campaign/campaign_worker.h"
+#include "host_sim/campaign/campaign_run.h"
 
 #include <gtest/gtest.h>
 
-#include "host_sim/campaign/campaign_engine.h"
 #include "host_sim/core/errors.h"
 
 namespace screed {
