@@ -8,10 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "host_sim/grid/agents/foraging_agent.h"
-#include "host_sim/grid/agents/memetic_agent.h"
-#include "host_sim/grid/agents/probabilistic_agent.h"
-#include "host_sim/grid/grid_terrain.h"
+#include "host_sim/grid/grid_agents.h"
 #include "host_sim/grid/grid_world.h"
 
 namespace screed {

@@ -1,4 +1,4 @@
-// Recordings of grid runs in HDF5.
+// Frames out of runs, and recordings in HDF5.
 #include "host_sim/grid/grid_recording.h"
 
 #include <algorithm>
@@ -6,8 +6,24 @@
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/hdf5_handle.h"
+#include "host_sim/grid/grid_run.h"
 
 namespace screed {
+
+uint64_t GridFrame::carried() const {
+  return static_cast<uint64_t>(std::count_if(
+      agents.begin(), agents.end(), [](const FrameAgent& agent) { return agent.carries; }));
+}
+
+GridFrame frame_of(const GridRun& run) {
+  GridFrame frame{run.world().terrain(), {}, run.cycles(), run.swarm().counts().units};
+  for (size_t i = 0; i < run.swarm().size(); ++i) {
+    const AgentView view = run.swarm().view(i);
+    frame.agents.push_back({run.world().x(view.place), run.world().y(view.place), view.carries});
+  }
+  return frame;
+}
+
 namespace {
 
 constexpr const char* kRecordingFormat = "screed grid run";

@@ -1,12 +1,4 @@
-// A run of the grid world in an HDF5 file: the terrain before and after, and where every agent
-// stood and what it did in every cycle. It replays without the program that made it.
-//
-//   attributes           format = "screed grid run", format_version, program_version, and every
-//                        value of describe(); cycles, units
-//   heights_before/_after  uint16 [rows, columns], row 0 = least y
-//   places               uint32 [cycles + 1, agents], y * columns + x; row 0 is the start
-//   operations           uint8 [cycles, agents]: 0 none, 1 pick-up, 2 deposit; row i happened on
-//                        the cells of places[i], then the agents stepped to places[i + 1]
+// What the grid world looks like at one moment, and a whole run of such moments in a file.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +8,41 @@
 #include <utility>
 #include <vector>
 
-#include "host_sim/grid/grid_frame.h"
 #include "host_sim/grid/grid_run.h"
+#include "host_sim/grid/grid_world.h"
 
 namespace screed {
+
+class GridRun;
+
+struct FrameAgent {
+  int x;
+  int y;
+  bool carries;
+};
+
+/// One moment: the live view and the ray-traced picture draw it; it comes from a run or from a
+/// recording.
+struct GridFrame {
+  GridTerrain terrain;
+  std::vector<FrameAgent> agents;
+  uint64_t cycle = 0;
+  uint64_t units = 0;
+
+  [[nodiscard]] uint64_t carried() const;
+};
+
+GridFrame frame_of(const GridRun& run);
+
+// A run of the grid world in an HDF5 file: the terrain before and after, and where every agent
+// stood and what it did in every cycle. It replays without the program that made it.
+//
+//   attributes           format = "screed grid run", format_version, program_version, and every
+//                        value of describe(); cycles, units
+//   heights_before/_after  uint16 [rows, columns], row 0 = least y
+//   places               uint32 [cycles + 1, agents], y * columns + x; row 0 is the start
+//   operations           uint8 [cycles, agents]: 0 none, 1 pick-up, 2 deposit; row i happened on
+//                        the cells of places[i], then the agents stepped to places[i + 1]
 
 /// Records a run while it goes on. The file has its name only when finish() has returned.
 class GridRecorder {

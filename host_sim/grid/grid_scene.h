@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host_sim/core/task_progress.h"
-#include "host_sim/grid/grid_frame.h"
+#include "host_sim/grid/grid_recording.h"
 
 namespace screed {
 

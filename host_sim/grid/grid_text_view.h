@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "host_sim/grid/grid_frame.h"
+#include "host_sim/grid/grid_recording.h"
 
 namespace screed {
 

@@ -6,13 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "host_sim/grid/agents/chromosome.h"
-#include "host_sim/grid/agents/foraging_agent.h"
-#include "host_sim/grid/agents/grid_random.h"
-#include "host_sim/grid/agents/height_memory.h"
-#include "host_sim/grid/agents/memetic_agent.h"
-#include "host_sim/grid/agents/probabilistic_agent.h"
-#include "host_sim/grid/agents/response_curve.h"
+#include "host_sim/grid/grid_agents.h"
 
 namespace screed::testing {
 namespace {

@@ -10,11 +10,9 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/grid/grid_config.h"
-#include "host_sim/grid/grid_frame.h"
+#include "host_sim/grid/grid_recording.h"
 #include "host_sim/grid/grid_run.h"
 #include "host_sim/grid/grid_scene.h"
-#include "host_sim/grid/grid_swarm.h"
-#include "host_sim/grid/grid_terrain.h"
 #include "host_sim/grid/grid_text_view.h"
 #include "host_sim/grid/grid_world.h"
 #include "host_sim/physics/terrain/grey_image.h"
