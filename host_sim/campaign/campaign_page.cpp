@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "host_sim/campaign/cell_comparison.h"
-#include "host_sim/campaign/cell_curves.h"
+#include "host_sim/campaign/cell_statistics.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
 #include "host_sim/core/statistics.h"

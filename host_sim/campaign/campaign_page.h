@@ -7,9 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/campaign/campaign_plan.h"
-#include "host_sim/campaign/value_table.h"
+#include "host_sim/campaign/campaign_results.h"
 #include "host_sim/engine/task_folder.h"
 
 namespace screed {

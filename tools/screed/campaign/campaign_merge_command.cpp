@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "host_sim/campaign/campaign_merge.h"
+#include "host_sim/campaign/campaign_results.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
 #include "tools/screed/campaign/campaign_work.h"

@@ -11,7 +11,7 @@
 #include <system_error>
 #include <vector>
 
-#include "host_sim/campaign/campaign_merge.h"
+#include "host_sim/campaign/campaign_results.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/figures.h"

@@ -18,7 +18,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "host_sim/campaign/campaign_merge.h"
+#include "host_sim/campaign/campaign_results.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/campaign/campaign_page.h"
 #include "host_sim/campaign/campaign_plan.h"
+#include "host_sim/campaign/campaign_results.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"

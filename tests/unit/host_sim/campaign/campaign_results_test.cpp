@@ -1,5 +1,5 @@
 // Tables as CSV and HDF5.
-#include "host_sim/campaign/value_table.h"
+#include "host_sim/campaign/campaign_results.h"
 
 #include <gtest/gtest.h>
 
