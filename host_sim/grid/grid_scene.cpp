@@ -6,7 +6,6 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/render/picture/color_map.h"
-#include "host_sim/render/scene/pov_text.h"
 #include "host_sim/render/scene/povray.h"
 #include "host_sim/render/scene/scene_camera.h"
 

@@ -8,7 +8,7 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/render/chart/line_chart.h"
-#include "host_sim/render/chart/svg_png.h"
+#include "host_sim/render/chart/svg.h"
 #include "nn/training/predict.h"
 
 namespace screed::nn {

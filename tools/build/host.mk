@@ -94,7 +94,7 @@ $(B)/tiny_dnn/third_party/stb:
 VECTOR_SOURCES := nn/training/predict.cpp nn/terrain/terrain_trainer.cpp tools/bench/speed/network_bench.cpp
 $(call objects,$(VECTOR_SOURCES)): EXTRA_FLAGS += -UEIGEN_DONT_VECTORIZE -DEigen=EigenVectorised
 RSVG_FLAGS = $(shell $(call package_flags,librsvg-2.0))
-RSVG_SOURCES := host_sim/render/chart/svg_png.cpp
+RSVG_SOURCES := host_sim/render/chart/svg.cpp
 $(call objects,$(RSVG_SOURCES)): EXTRA_FLAGS = $(RSVG_FLAGS)
 SDL_FLAGS = $(shell $(call package_flags,sdl2))
 SDL_SOURCES := tools/screed/viewer/window.cpp tools/screed/viewer/gamepad_input.cpp \

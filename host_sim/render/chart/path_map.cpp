@@ -5,8 +5,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/grey_image.h"
-#include "host_sim/render/chart/chart_axis.h"
-#include "host_sim/render/chart/chart_series.h"
+#include "host_sim/render/chart/chart_parts.h"
 
 namespace screed {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "host_sim/render/chart/svg.h"
 #include "host_sim/render/picture/map_frame.h"
-#include "host_sim/render/picture/map_image.h"
 
 namespace screed {
 

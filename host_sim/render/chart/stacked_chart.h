@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/render/chart/chart_series.h"
+#include "host_sim/render/chart/chart_parts.h"
 #include "host_sim/render/chart/svg.h"
 
 namespace screed {

@@ -1,8 +1,9 @@
-// Text of an SVG file, element by element. Knows shapes, words and colours, nothing of what they
-// mean. The same calls give the same bytes everywhere.
+// Text of an SVG file, element by element, and the same as a PNG file. Knows shapes, words and
+// colours, nothing of what they mean. The same calls give the same SVG bytes everywhere.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <utility>
@@ -66,5 +67,10 @@ class Svg {
   std::string out_;
   int clips_ = 0;
 };
+
+/// Draws an SVG into a PNG file at `scale` pixels for each of its own. Throws RunError when it
+/// cannot be drawn or written.
+void write_svg_as_png(const std::filesystem::path& path, const std::string& svg,
+                      double scale = 2.0);
 
 }  // namespace screed

@@ -8,6 +8,7 @@
 #include <span>
 
 namespace screed {
+
 namespace {
 
 /// OKLab: lightness 0..1, a = green to red, b = blue to yellow.

@@ -7,9 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include "host_sim/render/picture/relief.h"
-
 namespace screed {
+
 namespace {
 
 // Entries of a ramp's table but the last; anchors of the ramps are entries. Lines between them are

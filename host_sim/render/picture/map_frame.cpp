@@ -6,6 +6,7 @@
 #include <cstdio>
 
 namespace screed {
+
 namespace {
 
 constexpr Color kInk{0.13, 0.15, 0.17};

@@ -2,6 +2,7 @@
 // pixels lie. Knows a rectangle of ground and a range of values, not what they mean.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -69,6 +70,15 @@ class MapFrame {
   PixelBox map_;
   PixelBox bar_;
   Pixel legend_;
+};
+
+/// The ground from above without the furniture around it, for pictures that put several together:
+/// width x height pixels, its rows from the north.
+struct MapImage {
+  MapRectangle ground;
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;
 };
 
 }  // namespace screed

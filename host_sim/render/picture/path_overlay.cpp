@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "host_sim/render/picture/state_color.h"
+#include "host_sim/render/picture/color_map.h"
 
 namespace screed {
 namespace {

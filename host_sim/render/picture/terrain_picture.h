@@ -1,4 +1,5 @@
-// Pictures of height fields: a shaded height map with a driven path, and what changed between two.
+// Pictures of height fields: a shaded height map with a driven path and the robot, and what changed
+// between two.
 #pragma once
 
 #include <filesystem>
@@ -7,12 +8,29 @@
 #include <vector>
 
 #include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/render/picture/canvas.h"
 #include "host_sim/render/picture/ground_painter.h"
-#include "host_sim/render/picture/map_image.h"
-#include "host_sim/render/picture/robot_shape.h"
+#include "host_sim/render/picture/map_frame.h"
 
 namespace screed {
+
+/// A rectangle in the robot's frame, m: x forward, y left.
+struct RobotPlate {
+  double back;
+  double front;
+  double right;
+  double left;
+};
+
+struct RobotShape {
+  RobotPlate hull{};
+  std::vector<RobotPlate> running_gear;  ///< tracks, or wheels: those of the left side first
+  size_t left_gear = 0;                  ///< how many of them are on the left
+};
+
+/// tracks: tracks round the wheels.
+RobotShape shape_of(const Assembly& robot, bool tracks);
 
 /// One place of a driven path; `state` colours the path from here to the next place
 /// (state_color.h) and indexes PictureOptions::state_names.

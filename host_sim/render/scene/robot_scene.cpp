@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host_sim/render/scene/pov_text.h"
+#include "host_sim/render/scene/povray.h"
 
 namespace screed {
 namespace {

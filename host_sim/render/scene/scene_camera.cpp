@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/render/scene/pov_text.h"
+#include "host_sim/render/scene/povray.h"
 
 namespace screed {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host_sim/render/scene/pov_text.h"
+#include "host_sim/render/scene/povray.h"
 
 namespace screed {
 namespace {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "host_sim/physics/terrain/terrain.h"
-#include "host_sim/render/scene/height_tint.h"
 #include "host_sim/render/scene/terrain_scene.h"
 
 namespace screed {

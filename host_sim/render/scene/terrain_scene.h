@@ -1,5 +1,5 @@
 // The ground as part of a POV-Ray scene: a height field with the look of soil, or a bed of spheres,
-// and the driven path. Knows height maps, no robots and no sessions.
+// tinted by height where wanted, and the driven path. Knows height maps, no robots and no sessions.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,9 +11,30 @@
 
 #include "host_sim/physics/terrain/height_map.h"
 #include "host_sim/render/picture/color_map.h"
-#include "host_sim/render/scene/height_tint.h"
+#include "host_sim/render/scene/scene_camera.h"
 
 namespace screed {
+
+/// Colours by height (height_color()) that are mixed into what the terrain is made of.
+struct HeightTint {
+  double low_m = 0.0;   ///< dark slate at and below
+  double high_m = 1.0;  ///< pale at and above; more than low_m
+  double share = 0.5;   ///< of the tint in the colour, 0..1
+};
+
+/// From the round number of millimetres below `low_m` to the one above `high_m`.
+HeightTint height_tint(double low_m, double high_m);
+
+/// `#declare HeightColors`, before everything that is tinted.
+std::string tint_text(const HeightTint& tint);
+
+/// `pattern`, what stands between the braces of a POV-Ray pigment, with the tint mixed in; as it is
+/// without a tint.
+std::string tinted(const std::string& pattern, const std::optional<HeightTint>& tint);
+
+/// The colour bar with its heights in mm, in the lower left corner of what the camera sees.
+std::string tint_legend_text(const HeightTint& tint, const SceneCamera& camera,
+                             const PictureFormat& format);
 
 /// The surface of a height map at any place, metres: bilinear, its edges going on outwards, or
 /// repeated.

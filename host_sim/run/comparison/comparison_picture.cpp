@@ -8,13 +8,12 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/statistics.h"
 #include "host_sim/ground_station/telemetry/schema.h"
-#include "host_sim/render/chart/band_intervals.h"
 #include "host_sim/render/chart/path_map.h"
+#include "host_sim/render/chart/plot_plan.h"
 #include "host_sim/render/chart/stacked_chart.h"
-#include "host_sim/render/chart/svg_png.h"
+#include "host_sim/render/chart/svg.h"
 #include "host_sim/render/picture/color_map.h"
-#include "host_sim/render/picture/relief.h"
-#include "host_sim/render/picture/state_color.h"
+#include "host_sim/render/picture/ground_painter.h"
 
 namespace screed {
 namespace {

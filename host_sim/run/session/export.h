@@ -13,7 +13,7 @@
 #include "host_sim/core/task_progress.h"
 #include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/physics/terrain/height_field.h"
-#include "host_sim/render/picture/robot_shape.h"
+#include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/run/session/session_reader.h"
 
 namespace screed {

@@ -12,7 +12,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/render/chart/path_map.h"
 #include "host_sim/render/chart/stacked_chart.h"
-#include "host_sim/render/chart/svg_png.h"
+#include "host_sim/render/chart/svg.h"
 #include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/export.h"

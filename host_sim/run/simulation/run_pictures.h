@@ -11,7 +11,6 @@
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/physics/terrain/height_field.h"
-#include "host_sim/render/picture/robot_shape.h"
 #include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/session/session_reader.h"

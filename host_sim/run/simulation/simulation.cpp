@@ -14,7 +14,7 @@
 #include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/telemetry/arming.h"
-#include "host_sim/render/picture/robot_shape.h"
+#include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/session/session_layout.h"
 #include "host_sim/run/simulation/outcome.h"

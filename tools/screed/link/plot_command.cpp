@@ -11,10 +11,9 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/render/chart/panel_plan.h"
-#include "host_sim/render/chart/svg_png.h"
+#include "host_sim/render/chart/plot_plan.h"
+#include "host_sim/render/chart/svg.h"
 #include "host_sim/render/picture/color_map.h"
-#include "host_sim/render/picture/state_color.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 

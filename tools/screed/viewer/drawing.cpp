@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "host_sim/render/picture/color_map.h"
 #include "host_sim/render/picture/path_overlay.h"
-#include "host_sim/render/picture/state_color.h"
 #include "tools/screed/viewer/panel.h"
 #include "tools/screed/viewer/style.h"
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "host_sim/core/constants.h"
+#include "host_sim/render/picture/color_map.h"
 #include "host_sim/render/picture/map_frame.h"
-#include "host_sim/render/picture/state_color.h"
 #include "host_sim/run/simulation/outcome.h"
 #include "tools/screed/viewer/style.h"
 

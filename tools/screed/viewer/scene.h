@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/render/picture/robot_shape.h"
+#include "host_sim/render/picture/terrain_picture.h"
 #include "tools/screed/viewer/camera.h"
 #include "tools/screed/viewer/layout.h"
 #include "tools/screed/viewer/pixel_drawing.h"

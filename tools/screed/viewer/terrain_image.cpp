@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "host_sim/core/constants.h"
-#include "host_sim/render/picture/relief.h"
+#include "host_sim/render/picture/ground_painter.h"
 
 namespace screed::viewer {
 namespace {

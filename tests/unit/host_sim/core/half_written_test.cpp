@@ -19,7 +19,7 @@
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/ground_station/telemetry/csv_tables.h"
 #include "host_sim/ground_station/telemetry/mcap_file.h"
-#include "host_sim/render/chart/svg_png.h"
+#include "host_sim/render/chart/svg.h"
 #include "tests/child_process.h"
 #include "tests/file_size_limit.h"
 #include "tests/temp_folder.h"

@@ -15,7 +15,6 @@
 #include "host_sim/render/picture/color_map.h"
 #include "host_sim/render/picture/map_frame.h"
 #include "host_sim/render/picture/path_overlay.h"
-#include "host_sim/render/picture/state_color.h"
 #include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/run/simulation/outcome.h"
 #include "tests/temp_folder.h"

@@ -11,7 +11,6 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/vehicle/urdf/urdf_importer.h"
-#include "host_sim/render/scene/height_tint.h"
 #include "host_sim/render/scene/povray.h"
 #include "host_sim/render/scene/robot_scene.h"
 #include "host_sim/render/scene/scene_camera.h"

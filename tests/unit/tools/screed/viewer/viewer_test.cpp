@@ -7,7 +7,7 @@
 #include "firmware/leveling/leveling.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/terrain_statistics.h"
-#include "host_sim/render/picture/state_color.h"
+#include "host_sim/render/picture/color_map.h"
 #include "host_sim/run/simulation/recorders.h"
 #include "tools/screed/viewer/drawing.h"
 #include "tools/screed/viewer/input.h"

@@ -1,5 +1,5 @@
 // Points, lines and error bars of a chart: which shapes stand where.
-#include "host_sim/render/chart/chart_series.h"
+#include "host_sim/render/chart/chart_parts.h"
 
 #include <gtest/gtest.h>
 
