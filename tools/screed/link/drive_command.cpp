@@ -24,7 +24,7 @@
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/terminal_screen.h"
 #include "tools/screed/link/robot_link.h"
-#include "tools/screed/viewer/gamepad_input.h"
+#include "tools/screed/viewer/window.h"
 
 namespace screed {
 namespace {

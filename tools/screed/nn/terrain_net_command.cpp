@@ -18,9 +18,7 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
-#include "tools/screed/viewer/camera.h"
-#include "tools/screed/viewer/pixel_drawing.h"
-#include "tools/screed/viewer/terrain_image.h"
+#include "tools/screed/viewer/ground_view.h"
 
 namespace screed {
 namespace {

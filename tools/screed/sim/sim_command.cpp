@@ -19,8 +19,8 @@
 #include "tools/screed/cli/run_batch.h"
 #include "tools/screed/cli/world_choice.h"
 #include "tools/screed/viewer/keyboard_driver.h"
-#include "tools/screed/viewer/live_viewer.h"
-#include "tools/screed/viewer/view_options.h"
+#include "tools/screed/viewer/run_viewers.h"
+#include "tools/screed/viewer/view_command.h"
 
 namespace screed {
 namespace {

@@ -34,7 +34,6 @@ class Drawing {
   void draw_trail_ends(const Scene& scene, const std::vector<TrailPoint>& trail,
                        const RobotMarker& robot);
   void draw_bed_edge(const Scene& scene);
-  // In drawing_overlay.cpp:
   void draw_overlay(const Scene& scene);
   void draw_help(const std::vector<HelpLine>& help);
   void draw_timeline(const Scene& scene);

@@ -1,14 +1,31 @@
-// What keys mean.
+// What keys and sticks mean.
 #include "tools/screed/viewer/input.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "host_sim/core/errors.h"
 #include "tools/screed/cli/number_option.h"
 
 namespace screed::viewer {
+
+Key key_of(GamepadButton button) {
+  for (const GamepadMapping& mapping : kGamepadMapping) {
+    if (mapping.button == button) return mapping.key;
+  }
+  return 0;
+}
+
+double stick_value(int raw) {
+  constexpr double kFull = 32767.0;
+  constexpr double kDeadZone = 1.0 / 6.0;
+  const double value = std::clamp(raw / kFull, -1.0, 1.0);
+  const double beyond = (std::abs(value) - kDeadZone) / (1.0 - kDeadZone);
+  return beyond <= 0.0 ? 0.0 : std::copysign(beyond, value);
+}
+
 namespace {
 
 struct NamedKey {

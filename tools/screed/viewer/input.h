@@ -1,18 +1,80 @@
-// Keys and mouse, and what they ask the viewer to do. Knows no window system.
+// Keys, mouse and gamepad, and what they ask the viewer to do. Knows no window system and no
+// library: window.h reads the devices.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host_sim/render/picture/canvas.h"
-#include "tools/screed/viewer/gamepad.h"
-#include "tools/screed/viewer/keys.h"
+#include "tools/screed/cli/emergency_stop_key.h"
+#include "tools/screed/viewer/ground_view.h"
 #include "tools/screed/viewer/scene.h"
-#include "tools/screed/viewer/terrain_image.h"
 
 namespace screed::viewer {
+
+/// The character of a key, small; or one of these.
+using Key = int;
+inline constexpr Key kKeyLeft = 256;
+inline constexpr Key kKeyRight = 257;
+inline constexpr Key kKeyUp = 258;
+inline constexpr Key kKeyDown = 259;
+inline constexpr Key kKeyHome = 260;
+inline constexpr Key kKeyEnd = 261;
+inline constexpr Key kKeyEscape = 262;
+inline constexpr Key kKeyBackspace = 263;
+inline constexpr Key kKeyF12 = 264;
+inline constexpr Key kKeyEmergencyStop = kEmergencyStopKey;
+
+/// Named by place, as on any gamepad: south is A of an Xbox gamepad, the cross of a PlayStation
+/// one. Numbered as SDL_GameControllerButton.
+enum class GamepadButton : uint8_t {
+  kSouth = 0,
+  kEast = 1,
+  kWest = 2,
+  kNorth = 3,
+  kBack = 4,
+  kStart = 6,
+  kLeftShoulder = 9,
+  kRightShoulder = 10
+};
+
+enum class GamepadAxis : uint8_t { kTurn, kDrive };
+
+/// A button does what a key does.
+struct GamepadMapping {
+  GamepadButton button;
+  Key key;
+  const char* name;  ///< on most gamepads
+  const char* what;
+};
+inline constexpr std::array<GamepadMapping, 8> kGamepadMapping = {{
+    {GamepadButton::kEast, kKeyEmergencyStop, "B", "emergency stop"},
+    {GamepadButton::kSouth, kKeyBackspace, "A", "the algorithm drives again"},
+    {GamepadButton::kWest, 'c', "X", "clear a fault, drive on"},
+    {GamepadButton::kNorth, 'f', "Y", "follow the robot"},
+    {GamepadButton::kStart, 'p', "Start", "pause, go on"},
+    {GamepadButton::kBack, 'h', "Back", "these keys"},
+    {GamepadButton::kLeftShoulder, '-', "LB", "slower"},
+    {GamepadButton::kRightShoulder, '+', "RB", "faster"},
+}};
+
+/// The key of a button; 0: it has none.
+Key key_of(GamepadButton button);
+
+/// -1..1 of an axis' raw -32768..32767. Within the dead zone, a sixth of its travel, exactly 0: a
+/// worn stick does not come to rest in its centre. From there it rises evenly to full travel.
+double stick_value(int raw);
+
+/// Where a stick stands.
+struct Stick {
+  double forward = 0.0;  ///< -1..1
+  double left = 0.0;     ///< -1..1
+
+  bool held() const { return forward != 0.0 || left != 0.0; }
+};
 
 struct InputEvent {
   enum class Kind : uint8_t {
@@ -85,7 +147,6 @@ class Controls {
   bool emergency_stop = false;
   bool clear_fault = false;
 
-  /// Of the arrow keys held down and the stick: forward and left, -1..1; slowly with shift.
   double forward() const;
   double left() const;
   /// The user drives now: arrow keys are held down, or the stick is out of its dead zone.

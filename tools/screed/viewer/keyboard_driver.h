@@ -1,19 +1,46 @@
-// The user at the keyboard or gamepad as the robot's ground station: takes over from the simulated
-// one, over the same radio, with the same signed commands and heartbeats as `screed monitor` sends.
-//
-// Nothing is sent before the user takes over, so that a run that is only watched is the run that
-// nobody watched. What is sent is part of the recorded samples, as from any ground station.
+// Who drives: the line that says so, and the user at keyboard or gamepad.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "host_sim/ground_station/link/link.h"
 #include "host_sim/ground_station/link/robot_pilot.h"
 #include "host_sim/ground_station/station/ground_station.h"
-#include "tools/screed/viewer/subtitle.h"
 
 namespace screed::viewer {
+
+/// Who moves the robot.
+struct Driver {
+  enum class Kind : uint8_t {
+    kAlgorithm,         ///< the firmware
+    kKeyboard,          ///< the user of this viewer
+    kGamepad,           ///< likewise
+    kSimulatedStation,  ///< the run's own ground station, as the experiment file says
+    kExternalStation,   ///< another program, over the radio
+    kUnknownStation     ///< a ground station: a recording does not say which
+  };
+
+  Kind kind = Kind::kAlgorithm;
+  std::string algorithm;       ///< its name, for kAlgorithm
+  bool external_link = false;  ///< kAlgorithm, supervised by another program's heartbeats
+  bool replay = false;         ///< of a recorded run
+
+  bool operator==(const Driver&) const = default;
+};
+
+/// The terrain as a user calls it: "soft soil (dry_sand)". model: of the section [map].
+std::string terrain_name(const std::string& model, const std::string& soil);
+
+/// "hill_sensing drives on rigid ground, seed 1".
+std::string subtitle_of(const Driver& driver, const std::string& terrain, uint64_t seed);
+
+// The user at the keyboard or gamepad as the robot's ground station: takes over from the simulated
+// one, over the same radio, with the same signed commands and heartbeats as `screed monitor` sends.
+//
+// Nothing is sent before the user takes over, so that a run that is only watched is the run that
+// nobody watched. What is sent is part of the recorded samples, as from any ground station.
 
 class KeyboardDriver : public GroundPort, private Link {
  public:

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "host_sim/render/picture/map_frame.h"
-#include "tools/screed/viewer/style.h"
 
 namespace screed::viewer {
 namespace {

@@ -12,7 +12,7 @@
 #include "host_sim/render/picture/color_map.h"
 #include "host_sim/render/picture/map_frame.h"
 #include "host_sim/run/simulation/outcome.h"
-#include "tools/screed/viewer/style.h"
+#include "tools/screed/viewer/layout.h"
 
 namespace screed::viewer {
 namespace {

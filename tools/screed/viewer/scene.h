@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "host_sim/render/picture/terrain_picture.h"
-#include "tools/screed/viewer/camera.h"
+#include "tools/screed/viewer/ground_view.h"
 #include "tools/screed/viewer/layout.h"
-#include "tools/screed/viewer/pixel_drawing.h"
 #include "tools/screed/viewer/slope_statistics.h"
-#include "tools/screed/viewer/terrain_image.h"
 
 namespace screed::viewer {
 

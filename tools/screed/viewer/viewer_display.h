@@ -19,7 +19,7 @@
 #include "host_sim/run/simulation/outcome.h"
 #include "tools/screed/viewer/drawing.h"
 #include "tools/screed/viewer/input.h"
-#include "tools/screed/viewer/subtitle.h"
+#include "tools/screed/viewer/keyboard_driver.h"
 #include "tools/screed/viewer/window.h"
 
 namespace screed::viewer {

@@ -1,5 +1,5 @@
 // A window on the screen that shows a canvas and tells what the user does to it, with keys, mouse
-// or a gamepad. This file and gamepad_input.cpp alone know SDL.
+// or a gamepad. These files alone know SDL.
 #pragma once
 
 #include <memory>
@@ -8,6 +8,8 @@
 
 #include "host_sim/render/picture/canvas.h"
 #include "tools/screed/viewer/input.h"
+
+union SDL_Event;
 
 namespace screed::viewer {
 
@@ -28,6 +30,26 @@ class Window {
   void show(Canvas& canvas);
   /// How it comes to the screen: "x11", "wayland", "dummy".
   std::string driver() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Reads gamepads, those that are there and those that are plugged in later. The window asks it
+/// what an SDL event means.
+class GamepadInput {
+ public:
+  /// Without gamepads, or without the right to read them, this does nothing.
+  GamepadInput();
+  GamepadInput(const GamepadInput&) = delete;
+  GamepadInput& operator=(const GamepadInput&) = delete;
+  ~GamepadInput();
+
+  /// What happened since the last call, for a program without a window.
+  std::vector<InputEvent> poll();
+  /// Adds what the event means to `events`; nothing when it is none of a gamepad.
+  void convert(const SDL_Event& event, std::vector<InputEvent>& events);
 
  private:
   class Impl;

@@ -1,5 +1,5 @@
 // Gamepads as SDL reports them: virtual ones, which SDL makes for programs that test themselves.
-#include "tools/screed/viewer/gamepad_input.h"
+#include "tools/screed/viewer/window.h"
 
 #include <gtest/gtest.h>
 

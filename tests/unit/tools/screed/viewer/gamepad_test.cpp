@@ -1,9 +1,7 @@
 // Sticks and buttons: dead zone, what they ask for, hot plug.
-#include "tools/screed/viewer/gamepad.h"
+#include "tools/screed/viewer/input.h"
 
 #include <gtest/gtest.h>
-
-#include "tools/screed/viewer/input.h"
 
 namespace screed::viewer {
 namespace {

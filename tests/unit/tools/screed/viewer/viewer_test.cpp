@@ -290,7 +290,7 @@ TEST_F(ViewerDrawing, ThePathShowsAsFarAsItHasCome) {
   scene_.trail_points = 10;
   drawing_.draw(scene_);
   const uint32_t ground = at(0.5, 0.5);
-  EXPECT_EQ(at(-0.7, -0.5), packed(state_color(1)));
+  EXPECT_EQ(at(-0.7, -0.5), pixel_of(state_color(1)));
   EXPECT_EQ(at(-0.05, -0.5), ground);
   scene_.show_trail = false;
   drawing_.draw(scene_);
@@ -303,7 +303,7 @@ TEST_F(ViewerDrawing, TheRobotDoesNotHideThePathsEnd) {
   scene_.trail_points = robots_[0].trail.size();
   drawing_.draw(scene_);
   // Over the tail of the hull, which reaches from -0.1 to 0.1; its end at the robot's centre.
-  EXPECT_EQ(at(-0.08, 0.0), packed(state_color(2)));
+  EXPECT_EQ(at(-0.08, 0.0), pixel_of(state_color(2)));
   EXPECT_LT(brightness(at(0.0, 0.0)), 150);
   EXPECT_GT(brightness(at(0.0, 0.0) & 0xFFFFFFU), 0);
 }
@@ -324,7 +324,7 @@ TEST_F(ViewerDrawing, WallsAreBoardsRoundTheBed) {
   scene_.place.walls = true;
   drawing_.draw(scene_);
   EXPECT_NE(at(1.008, 0.5), open);
-  EXPECT_NEAR(brightness(at(1.008, 0.5)), brightness(packed(kBoards)), 3);
+  EXPECT_NEAR(brightness(at(1.008, 0.5)), brightness(pixel_of(kBoards)), 3);
   EXPECT_EQ(at(0.9, 0.5), inside);
 }
 

@@ -12,8 +12,7 @@
 #include "tests/temp_folder.h"
 #include "tests/unit/host_sim/run/session/session_fixture.h"
 #include "tools/screed/viewer/keyboard_driver.h"
-#include "tools/screed/viewer/live_viewer.h"
-#include "tools/screed/viewer/recorded_viewer.h"
+#include "tools/screed/viewer/run_viewers.h"
 
 namespace screed::viewer {
 namespace {

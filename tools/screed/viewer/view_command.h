@@ -1,11 +1,11 @@
-// What the user may say about pictures of a run: for `screed sim` and `screed view`.
+// `screed view`, and what the user may say about pictures of a run: for `screed sim` as well.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
-#include "tools/command_line/command.h"
 
+#include "tools/command_line/command.h"
 #include "tools/screed/viewer/viewer_display.h"
 
 namespace screed {
