@@ -97,7 +97,7 @@ RSVG_FLAGS = $(shell $(call package_flags,librsvg-2.0))
 RSVG_SOURCES := host_sim/render/chart/svg.cpp
 $(call objects,$(RSVG_SOURCES)): EXTRA_FLAGS = $(RSVG_FLAGS)
 SDL_FLAGS = $(shell $(call package_flags,sdl2))
-SDL_SOURCES := tools/screed/viewer/window.cpp tests/unit/tools/screed/viewer/gamepad_input_test.cpp
+SDL_SOURCES := tools/screed/viewer/window.cpp tests/unit/tools/screed/viewer/gamepad_test.cpp
 $(call objects,$(SDL_SOURCES)): EXTRA_FLAGS = $(SDL_FLAGS)
 
 # ---- generated headers: what the program knows of its surroundings; only files that include them depend on them

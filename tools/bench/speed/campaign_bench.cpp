@@ -13,6 +13,7 @@
 #include <string>
 
 #include "host_sim/core/child_process.h"
+#include "host_sim/grid/grid_run.h"
 #include "tools/bench/require.h"
 
 namespace screed {
@@ -59,10 +60,9 @@ void write_campaign(const Ground& ground, const fs::path& file) {
 
 /// Whether the campaign in this folder ended with all runs done.
 bool run_campaign_of(const fs::path& folder, const char* program) {
-  return ChildProcess({.words = {program, "campaign", "run", "bench.ini", "--workers", "1",
-                                 "--quiet", "--out", "out"},
-                       .folder = folder})
-             .wait() == 0;
+  return shell_output("cd '" + folder.string() + "' && '" + program +
+                      "' campaign run bench.ini --workers 1 --quiet --out out")
+             .exit_code == 0;
 }
 
 void campaign(benchmark::State& state) {
@@ -89,6 +89,52 @@ BENCHMARK(campaign)
     ->Unit(benchmark::kSecond)
     ->Iterations(1)
     ->UseRealTime();
+
+// What a cycle of an agent costs in the grid world. `per_agent_cycle` is the figure to compare.
+//
+// A terrain goes on being changed when it is level, but ever less; so every benchmark begins anew
+// with a rough one after a while, and what it measures is the work of a run, not of its end.
+
+GridConfig config_of(GridAlgorithm algorithm, int side, int agents) {
+  GridConfig config;
+  config.algorithm = algorithm;
+  config.noise.width = side;
+  config.noise.height = side;
+  config.agents = agents;
+  return config;
+}
+
+/// Cycles of whole runs, 20 000 at most each; the check of the stop rule is part of a cycle.
+void grid_cycle(benchmark::State& state, GridAlgorithm algorithm, int side, int agents) {
+  constexpr uint64_t kLongest = 20'000;
+  constexpr uint64_t kEnoughToBegin = 1000;  // cycles; by then some agent has moved a unit
+  GridConfig config = config_of(algorithm, side, agents);
+  auto run = std::make_unique<GridRun>(config);
+  while (state.KeepRunning()) {
+    run->cycle();
+    if (run->finished() || run->cycles() == kLongest) {
+      state.PauseTiming();
+      ++config.seed;
+      run = std::make_unique<GridRun>(config);
+      state.ResumeTiming();
+    }
+  }
+  const GridResult result = run->result();
+  require(state, result.cycles < kEnoughToBegin || result.units > 0, "the agents move no units");
+  // The inverse of a rate is a time.
+  state.counters["per_agent_cycle"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * agents,
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+BENCHMARK_CAPTURE(grid_cycle, probabilistic, GridAlgorithm::kProbabilistic, 32, 8);
+BENCHMARK_CAPTURE(grid_cycle, threshold, GridAlgorithm::kThreshold, 32, 8);
+BENCHMARK_CAPTURE(grid_cycle, memetic_1, GridAlgorithm::kMemetic1, 32, 8);
+BENCHMARK_CAPTURE(grid_cycle, memetic_2, GridAlgorithm::kMemetic2, 32, 8);
+BENCHMARK_CAPTURE(grid_cycle, patient, GridAlgorithm::kPatient, 32, 8);
+BENCHMARK_CAPTURE(grid_cycle, forager, GridAlgorithm::kForager, 32, 8);
+/// 128 times as many cells an agent stays the same: what caches cost.
+BENCHMARK_CAPTURE(grid_cycle, probabilistic_1024x1024, GridAlgorithm::kProbabilistic, 1024, 8192);
 
 }  // namespace
 }  // namespace screed

@@ -11,7 +11,6 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "tools/bench/telemetry/corruption.h"
-#include "tools/bench/telemetry/random_frames.h"
 
 namespace screed {
 namespace {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "tools/bench/telemetry/corruption.h"
-#include "tools/bench/telemetry/random_frames.h"
 
 namespace screed {
 namespace {
