@@ -157,19 +157,6 @@ void check_entry(const Benchmark& benchmark, const fs::path& file,
   }
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  return name_list(names);
-}
-
-/// Of the section that says what a level is.
-std::string heading_of(const std::string& factor, const std::string& level) {
-  return factor + " " + level;
-}
-
-std::string key_of(const IniEntry& entry) {
-  return entry.section + "." + entry.key;
-}
-
 [[noreturn]] void refuse_level(const std::string& factor, const std::string& level,
                                const std::vector<std::string>& known) {
   throw InputError("unknown " + factor + " '" + level + "'; known are " + name_list(known) +
@@ -256,7 +243,7 @@ CampaignFile benchmark_campaign(const Benchmark& benchmark, const BenchmarkChoic
   for (std::size_t i = 0; i < wanted; ++i) numbers.push_back(std::to_string(seeds[i]));
   add("campaign", "name", "leveling-" + choice.suite + (choice.training ? "-training" : ""));
   add("campaign", "experiment", benchmark.experiment);
-  add("campaign", "seeds", joined(numbers));
+  add("campaign", "seeds", name_list(numbers));
   add("campaign", "keep", keep_name(choice.keep));
   bool has_duration = false;
   for (const std::string& factor : factor_names()) {
@@ -270,7 +257,7 @@ CampaignFile benchmark_campaign(const Benchmark& benchmark, const BenchmarkChoic
     if (levels.empty() && factor == kWorldFactor) continue;
     if (levels.empty())
       throw InputError(benchmark.path.string() + ": [suite " + choice.suite + "] has no " + factor);
-    add("grid", factor, joined(levels));
+    add("grid", factor, name_list(levels));
     for (const std::string& level : levels) {
       const auto& known = benchmark.levels.at(factor);
       const auto found = known.find(level);
@@ -279,11 +266,10 @@ CampaignFile benchmark_campaign(const Benchmark& benchmark, const BenchmarkChoic
         for (const auto& [name, unused] : known) all.push_back(name);
         refuse_level(factor, level, all);
       }
-      const std::string heading = heading_of(factor, level);
       for (const IniEntry& entry : found->second) {
         const bool duration = entry.section == "experiment" && entry.key == "duration";
         has_duration = has_duration || duration;
-        entries.push_back({heading, key_of(entry),
+        entries.push_back({factor + " " + level, entry.section + "." + entry.key,
                            duration && suite->second.duration_s.has_value()
                                ? shortest(*suite->second.duration_s)
                                : entry.value,

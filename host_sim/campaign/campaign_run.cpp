@@ -179,8 +179,7 @@ void serve_campaign(const TaskFolder& folder, const std::string& program_version
               {{"version", program_version}, {"arithmetic", arithmetic()}}, requests, answer);
 }
 
-// ---- of all runs
-// ----------------------------------------------------------------------------------
+// ---- of all runs --------------------------------------------------------------------------------
 
 namespace {
 

@@ -30,8 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// ---- the plan
-// -------------------------------------------------------------------------------------
+// ---- the plan -----------------------------------------------------------------------------------
 
 constexpr PlanFormat kPlanFormat{"screed-grid-sweep", 1, "sweep"};
 /// Part of every identity: raised when the same configuration is to count as another run.
@@ -175,8 +174,7 @@ SweepPlan read_sweep_plan(const fs::path& file) {
   return plan;
 }
 
-// ---- the worker
-// -----------------------------------------------------------------------------------
+// ---- the worker ---------------------------------------------------------------------------------
 
 namespace {
 
@@ -240,8 +238,7 @@ void serve_sweep(const TaskFolder& folder, const std::string& program_version,
   serve_tasks(executor, folder.results(), {{"version", program_version}}, requests, answer);
 }
 
-// ---- the sweep
-// ------------------------------------------------------------------------------------
+// ---- the sweep ----------------------------------------------------------------------------------
 
 namespace {
 
