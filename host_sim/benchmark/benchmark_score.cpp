@@ -19,31 +19,6 @@
 namespace screed {
 namespace {
 
-/// Numbers of a column of the table of runs, by run; NaN: none.
-class RunColumn {
- public:
-  /// The table is referred to.
-  RunColumn(const ValueTable& table, const std::string& name) {
-    for (const ValueTable::ValueColumn& column : table.columns())
-      if (column.name == name) column_ = &column;
-  }
-  double at(std::size_t run) const {
-    if (column_ == nullptr || run >= column_->values.size())
-      return std::numeric_limits<double>::quiet_NaN();
-    const TableValue& value = column_->values[run];
-    if (value.is_boolean()) return value.get<bool>() ? 1.0 : 0.0;
-    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
-  }
-  /// A text stands there, and another one than this.
-  bool says_other_than(const std::string& text, std::size_t run) const {
-    return column_ != nullptr && run < column_->values.size() && column_->values[run].is_string() &&
-           column_->values[run].get<std::string>() != text;
-  }
-
- private:
-  const ValueTable::ValueColumn* column_ = nullptr;
-};
-
 constexpr double kSecondsPerHour = 3600.0;
 constexpr double kCm3PerM3 = 1e6;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -53,9 +28,9 @@ using Figure = std::function<double(std::size_t run)>;
 
 /// When each run's relief was first half of what it began with [s]; NaN: never, or not known.
 std::vector<double> half_times(std::size_t runs, const ValueTable& curves) {
-  const RunColumn run_of(curves, "run");
-  const RunColumn times(curves, "time");
-  const RunColumn reliefs(curves, "relief");
+  const std::vector<double> run_of = curves.numbers("run");
+  const std::vector<double> times = curves.numbers("time");
+  const std::vector<double> reliefs = curves.numbers("relief");
   std::vector<double> begin(runs, kNone);
   std::vector<double> half(runs, kNone);
   for (std::size_t row = 0; row < curves.rows(); ++row) {
@@ -96,17 +71,17 @@ std::size_t column_of_entry(const CampaignPlan& plan) {
 std::vector<CourseScore> score_benchmark(const CampaignPlan& plan, const ValueTable& runs,
                                          const ValueTable& curves, const std::string& baseline) {
   const std::size_t entry_column = column_of_entry(plan);
-  const RunColumn before(runs, "terrain_before.relief_m");
-  const RunColumn after(runs, "terrain_after.relief_m");
-  const RunColumn rough_before(runs, "terrain_before.roughness_m");
-  const RunColumn rough_after(runs, "terrain_after.roughness_m");
-  const RunColumn progress(runs, "leveling.progress");
-  const RunColumn energy(runs, "energy_j");
-  const RunColumn per_joule(runs, "leveling.transport_per_joule_m4");
-  const RunColumn stuck(runs, "leveling.stuck");
-  const RunColumn left(runs, "left_bed");
-  const RunColumn early(runs, "stopped_early");
-  const RunColumn faults(runs, "faults");
+  const std::vector<double> before = runs.numbers("terrain_before.relief_m");
+  const std::vector<double> after = runs.numbers("terrain_after.relief_m");
+  const std::vector<double> rough_before = runs.numbers("terrain_before.roughness_m");
+  const std::vector<double> rough_after = runs.numbers("terrain_after.roughness_m");
+  const std::vector<double> progress = runs.numbers("leveling.progress");
+  const std::vector<double> energy = runs.numbers("energy_j");
+  const std::vector<double> per_joule = runs.numbers("leveling.transport_per_joule_m4");
+  const std::vector<double> stuck = runs.numbers("leveling.stuck");
+  const std::vector<double> left = runs.numbers("left_bed");
+  const std::vector<double> early = runs.numbers("stopped_early");
+  const std::vector<std::string> faults = runs.texts("faults");
   const std::vector<double> halves = half_times(plan.run_count(), curves);
 
   const auto course_of = [&](std::size_t cell) {
@@ -161,7 +136,8 @@ std::vector<CourseScore> score_benchmark(const CampaignPlan& plan, const ValueTa
       for (std::size_t seed = 0; seed < plan.seed_count(); ++seed) {
         const std::size_t run = cell * plan.seed_count() + seed;
         if (!std::isnan(halves[run])) reached.push_back(halves[run]);
-        if (left.at(run) == 1.0 || early.at(run) == 1.0 || faults.says_other_than("none", run))
+        if (left.at(run) == 1.0 || early.at(run) == 1.0 ||
+            (!faults.at(run).empty() && faults.at(run) != "none"))
           ++score.ended_early;
       }
       score.halved = reached.size();
@@ -299,8 +275,8 @@ WorldRanking ranking_of(const CampaignPlan& plan, const Change& change,
 
 std::vector<WorldRanking> rank_worlds(const CampaignPlan& plan, const ValueTable& runs) {
   if (plan.factors.empty() || plan.factors.front().heading != kWorldFactor) return {};
-  const RunColumn before(runs, "terrain_before.relief_m");
-  const RunColumn after(runs, "terrain_after.relief_m");
+  const std::vector<double> before = runs.numbers("terrain_before.relief_m");
+  const std::vector<double> after = runs.numbers("terrain_after.relief_m");
   Change change(plan.run_count());
   for (std::size_t run = 0; run < change.size(); ++run) {
     change[run] = after.at(run) / before.at(run) - 1.0;

@@ -40,38 +40,6 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-const ValueTable::ValueColumn* column_of(const ValueTable& table, const std::string& name) {
-  for (const ValueTable::ValueColumn& column : table.columns()) {
-    if (column.name == name) return &column;
-  }
-  return nullptr;
-}
-
-/// The texts of a column; empty where there is none.
-std::vector<std::string> texts_of(const ValueTable& table, const std::string& name) {
-  std::vector<std::string> texts(table.rows());
-  const ValueTable::ValueColumn* const column = column_of(table, name);
-  if (column == nullptr) return texts;
-  for (std::size_t row = 0; row < column->values.size(); ++row) {
-    if (column->values[row].is_string()) texts[row] = column->values[row].get<std::string>();
-  }
-  return texts;
-}
-
-/// The numbers of a column, NaN where there is none; truth values are 0 and 1. Nothing of a column
-/// of texts.
-std::optional<std::vector<double>> numbers_of(const ValueTable& table,
-                                              const ValueTable::ValueColumn& column) {
-  std::vector<double> numbers(table.rows(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t row = 0; row < column.values.size(); ++row) {
-    const TableValue& value = column.values[row];
-    if (value.is_string()) return std::nullopt;
-    if (value.is_boolean()) numbers[row] = value.get<bool>() ? 1.0 : 0.0;
-    if (value.is_number()) numbers[row] = value.get<double>();
-  }
-  return numbers;
-}
-
 /// More than one value.
 bool varies(const std::vector<double>& numbers) {
   const auto first =
@@ -94,10 +62,13 @@ struct Metric {
 std::vector<Metric> metrics_of(const CampaignPlan& plan, const ValueTable& runs) {
   std::vector<Metric> metrics;
   for (const ValueTable::ValueColumn& column : runs.columns()) {
-    if (!is_metric(plan, column.name)) continue;
-    auto numbers = numbers_of(runs, column);
-    if (numbers.has_value() && varies(*numbers))
-      metrics.push_back({column.name, MetricValues(std::move(*numbers), plan.seed_count())});
+    if (!is_metric(plan, column.name) ||
+        std::any_of(column.values.begin(), column.values.end(),
+                    [](const TableValue& value) { return value.is_string(); }))
+      continue;
+    std::vector<double> numbers = runs.numbers(column.name);
+    if (varies(numbers))
+      metrics.push_back({column.name, MetricValues(std::move(numbers), plan.seed_count())});
   }
   return metrics;
 }
@@ -185,20 +156,16 @@ Json curves_json(const CampaignPlan& plan, const ValueTable& curves) {
 
 /// How a run ended, in words.
 std::vector<std::string> outcomes_of(const ValueTable& runs) {
-  const std::vector<std::string> status = texts_of(runs, "status");
-  const std::vector<std::string> faults = texts_of(runs, "faults");
-  const ValueTable::ValueColumn* const left = column_of(runs, "left_bed");
-  const auto left_bed = [left](std::size_t row) {
-    return left != nullptr && row < left->values.size() && left->values[row].is_boolean() &&
-           left->values[row].get<bool>();
-  };
+  const std::vector<std::string> status = runs.texts("status");
+  const std::vector<std::string> faults = runs.texts("faults");
+  const std::vector<double> left = runs.numbers("left_bed");
   std::vector<std::string> outcomes(runs.rows(), kNoFault);
   for (std::size_t row = 0; row < outcomes.size(); ++row) {
     if (status[row] == "failed") outcomes[row] = kFailed;
     if (status[row] == "missing") outcomes[row] = kMissing;
     if (status[row] != "done") continue;
     if (!faults[row].empty() && faults[row] != "none") outcomes[row] = "fault: " + faults[row];
-    if (left_bed(row)) outcomes[row] = "left the bed";
+    if (left[row] == 1.0) outcomes[row] = "left the bed";
   }
   return outcomes;
 }
@@ -230,8 +197,8 @@ Json cells_json(const CampaignPlan& plan, const std::vector<std::string>& outcom
 }
 
 Json failures_json(const CampaignPlan& plan, const ValueTable& runs) {
-  const std::vector<std::string> status = texts_of(runs, "status");
-  const std::vector<std::string> errors = texts_of(runs, "error");
+  const std::vector<std::string> status = runs.texts("status");
+  const std::vector<std::string> errors = runs.texts("error");
   Json list = Json::array();
   for (std::size_t run = 0; run < status.size(); ++run) {
     if (status[run] != "failed") continue;

@@ -160,6 +160,29 @@ const TableValue& ValueTable::at(size_t column, size_t row) const {
   return row < values.size() ? values[row] : null;
 }
 
+std::vector<double> ValueTable::numbers(const std::string& column) const {
+  std::vector<double> numbers(rows_, std::numeric_limits<double>::quiet_NaN());
+  const auto known = numbers_.find(column);
+  if (known == numbers_.end()) return numbers;
+  for (size_t row = 0; row < rows_; ++row) {
+    const TableValue& value = at(known->second, row);
+    if (value.is_boolean()) numbers[row] = value.get<bool>() ? 1.0 : 0.0;
+    if (value.is_number()) numbers[row] = value.get<double>();
+  }
+  return numbers;
+}
+
+std::vector<std::string> ValueTable::texts(const std::string& column) const {
+  std::vector<std::string> texts(rows_);
+  const auto known = numbers_.find(column);
+  if (known == numbers_.end()) return texts;
+  for (size_t row = 0; row < rows_; ++row) {
+    const TableValue& value = at(known->second, row);
+    if (value.is_string()) texts[row] = value.get<std::string>();
+  }
+  return texts;
+}
+
 std::string ValueTable::csv() const {
   std::string text;
   for (size_t column = 0; column < columns_.size(); ++column)

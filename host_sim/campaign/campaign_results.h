@@ -41,6 +41,10 @@ class ValueTable {
   /// In the order in which they were first set.
   const std::vector<ValueColumn>& columns() const { return columns_; }
   const TableValue& at(size_t column, size_t row) const;
+  /// A column by row: its numbers, truth values as 1 and 0; NaN for all else, and without it.
+  std::vector<double> numbers(const std::string& column) const;
+  /// Its texts; empty for all else, and without it.
+  std::vector<std::string> texts(const std::string& column) const;
 
   /// Lines of cells (RFC 4180), the first with the names. Numbers are the shortest text that reads
   /// back to the same bits, truth values 1 and 0; null is an empty cell.

@@ -105,29 +105,22 @@ std::vector<FactorLevel> levels_of(const std::vector<std::vector<std::string>>& 
 
 namespace {
 
-constexpr std::array<std::string_view, 5> kShown = {"progress", "relief", "roughness",
-                                                    "robot_scale_flatness", "stuck"};
+constexpr std::array<const char*, 5> kShown = {"progress", "relief", "roughness",
+                                               "robot_scale_flatness", "stuck"};
 
 /// One figure of one run over time: where it was measured, times rising.
 using RunCurve = std::vector<std::pair<double, double>>;
 
-const ValueTable::ValueColumn* find_column(const ValueTable& table, std::string_view name) {
-  const auto found =
-      std::find_if(table.columns().begin(), table.columns().end(),
-                   [name](const ValueTable::ValueColumn& column) { return column.name == name; });
-  return found == table.columns().end() ? nullptr : &*found;
-}
-
 /// By run.
 std::vector<RunCurve> run_curves(const CampaignPlan& plan, const ValueTable& table,
-                                 const ValueTable::ValueColumn& column) {
-  const ValueTable::ValueColumn& runs = *find_column(table, "run");
-  const ValueTable::ValueColumn& times = *find_column(table, "time");
+                                 const std::string& column) {
+  const std::vector<double> runs = table.numbers("run");
+  const std::vector<double> times = table.numbers("time");
+  const std::vector<double> values = table.numbers(column);
   std::vector<RunCurve> curves(plan.run_count());
-  for (std::size_t row = 0; row < column.values.size(); ++row) {
-    if (!column.values[row].is_number()) continue;
-    curves.at(runs.values[row].get<std::size_t>())
-        .emplace_back(times.values[row].get<double>(), column.values[row].get<double>());
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    if (std::isnan(values[row])) continue;
+    curves.at(static_cast<std::size_t>(runs[row])).emplace_back(times[row], values[row]);
   }
   return curves;
 }
@@ -173,14 +166,12 @@ std::vector<std::vector<SeedMean>> means_of_cells(const CampaignPlan& plan,
 
 std::vector<CellCurve> cell_curves(const CampaignPlan& plan, const ValueTable& curves) {
   std::vector<CellCurve> shown;
-  for (const std::string_view name : kShown) {
-    const ValueTable::ValueColumn* const column = find_column(curves, name);
-    if (column == nullptr) continue;
-    const std::vector<RunCurve> of_runs = run_curves(plan, curves, *column);
+  for (const char* const name : kShown) {
+    const std::vector<RunCurve> of_runs = run_curves(plan, curves, name);
     std::vector<double> times_s = common_times(of_runs);
     if (times_s.size() < 2) continue;
     auto cells = means_of_cells(plan, of_runs, times_s);
-    shown.push_back({std::string(name), std::move(times_s), std::move(cells)});
+    shown.push_back({name, std::move(times_s), std::move(cells)});
   }
   return shown;
 }

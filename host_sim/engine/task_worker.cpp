@@ -40,7 +40,7 @@ std::string one_line(const Json& json) {
   return json.dump(-1, Json::BadText::kReplace);
 }
 
-std::string number(double value) {
+std::string json_number(double value) {
   return Json(value).dump();
 }
 
@@ -100,8 +100,8 @@ class Worker {
       answer.failures.emplace_back(task, error.what());
     }
     stored.provenance = origin_ + ",\"begun\":\"" + time_text(begun) +
-                        "\",\"seconds\":" + number(seconds_since(begin)) +
-                        ",\"processor_seconds\":" + number(processor_s() - processor_begin_s) +
+                        "\",\"seconds\":" + json_number(seconds_since(begin)) +
+                        ",\"processor_seconds\":" + json_number(processor_s() - processor_begin_s) +
                         ",\"attempt\":" + std::to_string(attempt) + "}";
     if (!writer_) writer_.emplace(results_);
     writer_->append(stored);
