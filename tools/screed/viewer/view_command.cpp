@@ -95,15 +95,15 @@ void add_view_options(Command& command, ViewArguments& arguments) {
              {.low = 0.01, .high = 1000.0, .or_zero = true})
       ->group(kGroup);
   command
-      .add_option("--screenshot", arguments.screenshot,
+      .add_option("--screenshot", arguments.options.screenshot,
                   "Write a screenshot of the viewer to this PNG file")
       ->type_name("FILE")
       ->group(kGroup);
-  add_number(command, "--at", arguments.at,
+  add_number(command, "--at", arguments.options.screenshot_at,
              "Time of the screenshot [simulated s] (default: the end)", {0.0, 1e6})
       ->group(kGroup);
   command
-      .add_option("--frames-dir", arguments.frames_dir,
+      .add_option("--frames-dir", arguments.options.frames_dir,
                   "Write PNG frames of the whole run to this folder, 25 frames/s at --speed")
       ->type_name("FOLDER")
       ->group(kGroup);
@@ -111,15 +111,17 @@ void add_view_options(Command& command, ViewArguments& arguments) {
       ->group(kGroup)
       ->one_of({"height", "slope", "change"})
       ->show_default();
-  add_number(command, "--span", arguments.span_m, "Initial width of the view [m]", {0.05, 1000.0})
+  add_number(command, "--span", arguments.options.span_m, "Initial width of the view [m]",
+             {0.05, 1000.0})
       ->group(kGroup);
-  command.add_flag("--follow", arguments.follow, "Keep the robot in the centre")->group(kGroup);
+  command.add_flag("--follow", arguments.options.follow, "Keep the robot in the centre")
+      ->group(kGroup);
   command
       .add_option("--size", arguments.size,
                   "Size of the window or picture, WIDTHxHEIGHT [px] (" + size_range() +
                       "; default: 1280x800)")
       ->group(kGroup);
-  add_number(command, "--frames", arguments.frames,
+  add_number(command, "--frames", arguments.options.frames,
              "Show this number of frames, 1/60 s apart, as fast as possible, then exit and "
              "print the timing",
              kCountRange)
@@ -133,20 +135,13 @@ void add_view_options(Command& command, ViewArguments& arguments) {
 }
 
 std::optional<viewer::ViewerOptions> viewer_options(const ViewArguments& arguments, bool window) {
-  window = window || arguments.frames.has_value();
-  if (arguments.at.has_value() && arguments.screenshot.empty())
+  viewer::ViewerOptions options = arguments.options;
+  options.window = window || options.frames.has_value();
+  if (options.screenshot_at.has_value() && options.screenshot.empty())
     throw InputError("--at needs --screenshot FILE");
-  if (!arguments.screenshot.empty()) check_screenshot(arguments.screenshot);
-  if (!arguments.frames_dir.empty()) check_frames_folder(arguments.frames_dir);
-  viewer::ViewerOptions options;
-  options.window = window;
+  if (!options.screenshot.empty()) check_screenshot(options.screenshot);
+  if (!options.frames_dir.empty()) check_frames_folder(options.frames_dir);
   options.pace = arguments.speed.value_or(1.0);
-  options.frames = arguments.frames;
-  options.screenshot = arguments.screenshot;
-  options.screenshot_at = arguments.at;
-  options.frames_dir = arguments.frames_dir;
-  options.follow = arguments.follow;
-  options.span_m = arguments.span_m;
   if (arguments.size.has_value()) read_size(*arguments.size, options);
   if (arguments.shading == "slope") options.shading = viewer::Shading::kSlope;
   if (arguments.shading == "change") options.shading = viewer::Shading::kChange;
@@ -154,15 +149,12 @@ std::optional<viewer::ViewerOptions> viewer_options(const ViewArguments& argumen
     options.script.push_back(viewer::parse_scripted_key(press));
   }
   // Keys alone drive as well, unseen.
-  if (!window && arguments.screenshot.empty() && arguments.frames_dir.empty() &&
+  if (!options.window && options.screenshot.empty() && options.frames_dir.empty() &&
       options.script.empty())
     return std::nullopt;
   return options;
 }
 
-}  // namespace screed
-
-namespace screed {
 namespace {
 
 struct Options {
@@ -173,7 +165,8 @@ struct Options {
 
 int run_view(const Options& options) {
   // A picture or frames are made without a window.
-  const bool window = options.view.screenshot.empty() && options.view.frames_dir.empty();
+  const viewer::ViewerOptions& asked = options.view.options;
+  const bool window = asked.screenshot.empty() && asked.frames_dir.empty();
   viewer::ViewerOptions shown = viewer_options(options.view, window).value();
   TaskBar bar(false);
   shown.progress = bar.progress();
@@ -181,7 +174,7 @@ int run_view(const Options& options) {
   viewer::RecordedViewer viewer(run.path(), shown);
   viewer.run();
   bar.clear();
-  if (options.view.frames.has_value()) std::cerr << viewer.times().text() << "\n";
+  if (asked.frames.has_value()) std::cerr << viewer.times().text() << "\n";
   return interrupted_exit_code();
 }
 

@@ -10,16 +10,12 @@
 
 namespace screed {
 
+/// As the user says it: what the viewer takes as it is, and what is read.
 struct ViewArguments {
+  viewer::ViewerOptions options;
   std::optional<double> speed;
-  std::optional<uint64_t> frames;
-  std::string screenshot;
-  std::optional<double> at;
-  std::string frames_dir;
   std::string shading = "height";
   std::optional<std::string> size;
-  std::optional<double> span_m;
-  bool follow = false;
   std::vector<std::string> key_script;
 };
 
