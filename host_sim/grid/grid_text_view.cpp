@@ -22,15 +22,12 @@ int block_size(const GridFrame& frame, const TextViewOptions& options) {
   return std::max({1, by_width, by_height});
 }
 
-int byte_of(double part) {
-  return static_cast<int>(std::lround(std::clamp(part, 0.0, 1.0) * 255.0));
-}
-
 std::string background(const Color& color, bool true_color) {
   char text[40];
   if (true_color) {
-    std::snprintf(text, sizeof text, "\033[48;2;%d;%d;%dm", byte_of(color.red),
-                  byte_of(color.green), byte_of(color.blue));
+    const uint32_t rgb = pixel_of(color);
+    std::snprintf(text, sizeof text, "\033[48;2;%u;%u;%um", rgb >> 16U, rgb >> 8U & 0xFFU,
+                  rgb & 0xFFU);
   } else {
     const auto level = [](double part) { return static_cast<int>(std::lround(part * 5.0)); };
     std::snprintf(text, sizeof text, "\033[48;5;%dm",

@@ -54,12 +54,8 @@ std::string escaped(const std::string& words) {
 }
 
 std::string hex(Color color) {
-  const auto byte = [](double part) {
-    return static_cast<unsigned>(std::lround(std::clamp(part, 0.0, 1.0) * 255.0));
-  };
   char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", byte(color.red), byte(color.green),
-                byte(color.blue));
+  std::snprintf(text, sizeof text, "#%06x", pixel_of(color));
   return text;
 }
 

@@ -33,7 +33,7 @@ struct RobotShape {
 RobotShape shape_of(const Assembly& robot, bool tracks);
 
 /// One place of a driven path; `state` colours the path from here to the next place
-/// (state_color.h) and indexes PictureOptions::state_names.
+/// (state_color()) and indexes PictureOptions::state_names.
 struct PathPoint {
   double x_m;
   double y_m;
