@@ -19,7 +19,6 @@
 namespace screed {
 namespace {
 
-constexpr double kSecondsPerHour = 3600.0;
 constexpr double kCm3PerM3 = 1e6;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "firmware/parameters/parameter_table.h"
+#include "firmware/parameters/parameters.h"
 #include "host_sim/campaign/campaign_values.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/name_list.h"

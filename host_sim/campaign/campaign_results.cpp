@@ -13,7 +13,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/hdf5_handle.h"
 #include "host_sim/core/json.h"
-#include "host_sim/leveling/leveling_point.h"
+#include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 #include "host_sim/run/session/session_layout.h"
 

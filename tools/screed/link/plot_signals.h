@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "host_sim/ground_station/telemetry/log_decoder.h"
+#include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/ground_station/telemetry/schema.h"
 #include "host_sim/render/chart/plot_plan.h"
 #include "host_sim/render/chart/stacked_chart.h"

@@ -15,7 +15,7 @@
 #include "nn/slip/stuck_rules.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
-#include "tools/screed/cli/task_bar.h"
+#include "tools/screed/cli/progress_bar.h"
 
 namespace screed {
 namespace {

@@ -16,7 +16,6 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
-#include "tools/screed/cli/task_bar.h"
 #include "tools/screed/soil/soil_command.h"
 
 namespace screed {

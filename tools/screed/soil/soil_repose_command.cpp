@@ -12,7 +12,7 @@
 #include "host_sim/soil_validation/check_range.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
-#include "tools/screed/cli/task_bar.h"
+#include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/soil/soil_command.h"
 
 namespace screed {

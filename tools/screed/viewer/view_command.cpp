@@ -12,13 +12,12 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/made_folders.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/scene/log_session.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
-#include "tools/screed/cli/task_bar.h"
+#include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/viewer/run_viewers.h"
 
 namespace screed {
