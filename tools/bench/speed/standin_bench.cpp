@@ -14,7 +14,7 @@
 #include "host_sim/standin/belt_motion.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/surrogate.h"
-#include "nn/terrain/terrain_comparison.h"
+#include "nn/terrain/drive_strides.h"
 #include "nn/terrain/terrain_network.h"
 #include "tools/bench/require.h"
 

@@ -18,12 +18,12 @@
 
 #include "commands.h"
 #include "host_sim/campaign/campaign_file.h"
-#include "host_sim/campaign/campaign_merge.h"
-#include "host_sim/campaign/campaign_worker.h"
+#include "host_sim/campaign/campaign_results.h"
+#include "host_sim/campaign/campaign_run.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/figures.h"
-#include "host_sim/engine/worker_pool.h"
-#include "host_sim/grid/grid_sweep_worker.h"
+#include "host_sim/engine/task_engine.h"
+#include "host_sim/grid/grid_sweep.h"
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
@@ -66,10 +66,10 @@ class TrialFolder {
     std::error_code ignored;
     fs::remove_all(folder_.path, ignored);
   }
-  const CampaignFolder& get() const { return folder_; }
+  const TaskFolder& get() const { return folder_; }
 
  private:
-  CampaignFolder folder_;
+  TaskFolder folder_;
 };
 
 /// Of all runs.
@@ -229,7 +229,7 @@ struct MergeArguments {
 };
 
 int run_merge(const MergeArguments& arguments) {
-  const CampaignFolder folder{arguments.folder};
+  const TaskFolder folder{arguments.folder};
   const CampaignPlan plan = read_plan(folder.plan());
   const ResultIndex results(folder.results());
   note_odd_results(plan, results);

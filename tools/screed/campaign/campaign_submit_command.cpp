@@ -222,7 +222,7 @@ Json json_of(const CampaignPlan& plan, const CampaignCount& count,
 }
 
 /// Results are worth showing when Slurm does not answer, too.
-void print_jobs(const CampaignFolder& folder) {
+void print_jobs(const TaskFolder& folder) {
   for (const SlurmJob& job : slurm_jobs(folder)) {
     try {
       if (const int tasks = slurm::active_tasks(job.number); tasks > 0)
@@ -234,7 +234,7 @@ void print_jobs(const CampaignFolder& folder) {
 }
 
 int run_status(const StatusArguments& arguments) {
-  const CampaignFolder folder{arguments.folder};
+  const TaskFolder folder{arguments.folder};
   const CampaignPlan plan = read_plan(folder.plan());
   const ResultIndex results(folder.results());
   note_odd_results(plan, results);

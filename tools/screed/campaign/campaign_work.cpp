@@ -20,6 +20,7 @@
 
 #include "host_sim/campaign/campaign_results.h"
 #include "host_sim/core/atomic_file.h"
+#include "host_sim/core/child_process.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
 #include "host_sim/engine/task_engine.h"
@@ -231,20 +232,9 @@ std::vector<size_t> read_shard(const std::string& text, const CampaignPlan& plan
 namespace slurm {
 namespace {
 
-struct Output {
-  int exit_code = -1;
-  std::string text;  ///< of both standard output and standard error
-};
-
-Output run(const std::string& command) {
-  Output output;
-  FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return output;
-  std::array<char, 4096> buffer{};
-  for (size_t count = 0; (count = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-    output.text.append(buffer.data(), count);
-  const int status = pclose(pipe);
-  output.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+/// Of both standard output and standard error, without line feeds at the end.
+ShellOutput run(const std::string& command) {
+  ShellOutput output = shell_output(command + " 2>&1");
   while (output.text.ends_with('\n')) output.text.pop_back();
   return output;
 }
@@ -257,7 +247,7 @@ std::string first_line(const std::string& text) {
 }  // namespace
 
 int max_array_size() {
-  const Output output = run("scontrol show config");
+  const ShellOutput output = run("scontrol show config");
   if (output.exit_code != 0) throw RunError("Slurm does not answer: " + first_line(output.text));
   std::istringstream lines(output.text);
   for (std::string line; std::getline(lines, line);) {
@@ -268,13 +258,13 @@ int max_array_size() {
 }
 
 std::string submit(const std::string& script) {
-  const Output output = run("sbatch --parsable " + quoted(script));
+  const ShellOutput output = run("sbatch --parsable " + quoted(script));
   if (output.exit_code != 0) throw RunError("sbatch: " + first_line(output.text));
   return output.text.substr(0, output.text.find(';'));  // "12", or "12;cluster"
 }
 
 int active_tasks(const std::string& job) {
-  const Output output = run("squeue --noheader --array --format=%i --jobs=" + quoted(job));
+  const ShellOutput output = run("squeue --noheader --array --format=%i --jobs=" + quoted(job));
   if (output.exit_code == 0) {
     int tasks = 0;
     std::istringstream lines(output.text);

@@ -11,7 +11,7 @@
 
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/ground_station/telemetry/schema.h"
-#include "host_sim/render/chart/band_intervals.h"
+#include "host_sim/render/chart/plot_plan.h"
 #include "host_sim/render/chart/stacked_chart.h"
 
 namespace screed {

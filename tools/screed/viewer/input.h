@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host_sim/render/picture/canvas.h"
-#include "tools/screed/cli/emergency_stop_key.h"
+#include "tools/screed/cli/terminal_screen.h"
 #include "tools/screed/viewer/ground_view.h"
 #include "tools/screed/viewer/scene.h"
 
