@@ -14,6 +14,7 @@
 
 #include "host_sim/benchmark/benchmark_file.h"
 #include "host_sim/campaign/campaign_results.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/random.h"
 
 namespace screed {

@@ -53,8 +53,8 @@ bool link_lost(const DashboardInput& input, const RobotHistory& robot) {
   return !input.link.up || input.now_us > robot.last_us() + kOld_us;
 }
 
-/// Of the values that a message carries: they are more than a second old, or than one and a half
-/// of its periods.
+}  // namespace
+
 bool is_old(const RobotHistory& robot, const MessageInfo& message, uint64_t now_us) {
   const LatestTelemetry::Frame* const last = robot.latest().frame(message);
   if (last == nullptr) return false;
@@ -62,12 +62,13 @@ bool is_old(const RobotHistory& robot, const MessageInfo& message, uint64_t now_
   return now_us > last->time_us + std::max(kOld_us, period_us + period_us / 2);
 }
 
-/// "3 s", "5 min", "2 h".
 std::string age_text(double age_s) {
   if (age_s < 60.0) return number("%.0f s", std::floor(age_s));
   if (age_s < 3600.0) return number("%.0f min", std::floor(age_s / 60.0));
   return number("%.0f h", std::floor(age_s / 3600.0));
 }
+
+namespace {
 
 /// "3 damaged, 0 unknown".
 std::string refused_text(const DashboardInput& input) {

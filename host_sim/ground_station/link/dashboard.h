@@ -36,4 +36,11 @@ void draw_dashboard(TextCanvas& page, const DashboardInput& input);
 /// Everything that is known, line by line, for a pipe: no page, no width.
 std::string plain_report(const DashboardInput& input);
 
+/// Of the values that a message carries: they are more than a second old, or than one and a half
+/// of its periods.
+bool is_old(const RobotHistory& robot, const MessageInfo& message, uint64_t now_us);
+
+/// "3 s", "5 min", "2 h".
+std::string age_text(double age_s);
+
 }  // namespace screed

@@ -6,7 +6,6 @@
 
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/vehicle/urdf/urdf_document.h"
-#include "host_sim/physics/vehicle/urdf/urdf_importer.h"
 
 namespace screed {
 
@@ -25,7 +24,7 @@ TriangleMesh load_mesh(const std::filesystem::path& file, const Eigen::Vector3d&
 namespace screed::urdf_parts {
 
 /// The body without its pose. Meshes are searched relative to the folder of urdf_file.
-AssemblyBody to_body(const LinkElement& element, const urdf::Link& link,
+AssemblyBody to_body(const LinkElement& element, const ::urdf::Link& link,
                      const std::filesystem::path& urdf_file, const Diagnostic& diagnostic);
 
 }  // namespace screed::urdf_parts

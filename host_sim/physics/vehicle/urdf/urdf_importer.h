@@ -1,11 +1,8 @@
-// urdfdom behind a fence: it accepts a good deal that is wrong, prints, and keeps one log a
-// process. Part of urdf_importer.
+// Reads a robot model in the Unified Robot Description Format (URDF) into an Assembly. It knows
+// files, XML and meshes, but no physics engine. docs/robot-model.md says which part of URDF is
+// understood.
 #pragma once
 
-#include <tinyxml.h>
-#include <urdf_model/model.h>
-#include <urdf_world/types.h>
-#include <Eigen/Geometry>
 #include <array>
 #include <filesystem>
 #include <map>
@@ -13,25 +10,8 @@
 #include <string>
 
 #include "host_sim/physics/vehicle/assembly.h"
-#include "host_sim/physics/vehicle/urdf/urdf_document.h"
-
-namespace screed::urdf_parts {
-
-/// What urdfdom makes of a checked document; any error it logs is a refusal.
-urdf::ModelInterfaceSharedPtr parse_model(const TiXmlDocument& xml, const Diagnostic& diagnostic);
-
-Eigen::Vector3d to_eigen(const urdf::Vector3& v);
-/// The pose of an element's <origin>, by its own numbers: urdfdom turns angles into a quaternion
-/// whose bits depend on how it was compiled.
-Eigen::Isometry3d origin_of(const TiXmlElement& element);
-
-}  // namespace screed::urdf_parts
 
 namespace screed {
-
-// Reads a robot model in the Unified Robot Description Format (URDF) into an Assembly. It knows
-// files, XML and meshes, but no physics engine. docs/robot-model.md says which part of URDF is
-// understood.
 
 struct UrdfOptions {
   /// The links with these roles, for models with names of their own; empty: found by name and

@@ -26,7 +26,7 @@ struct JointData {
   std::optional<double> held_at_rad;
 };
 
-JointData to_joint(const JointElement& element, const urdf::Joint& joint,
+JointData to_joint(const JointElement& element, const ::urdf::Joint& joint,
                    const Diagnostic& diagnostic);
 /// Holds a joint at an angle; refuses one without axis or out of range.
 void hold(JointData& joint, const JointElement& element, double angle_rad,

@@ -208,7 +208,6 @@ TEST(PositionEstimate, AResetKnowsThePlaceForSure) {
 
 namespace {
 
-constexpr uint16_t kCount_um_q4 = 9048;
 constexpr int kDegree = 65536 / 360;
 
 Parameters site() {

@@ -172,7 +172,7 @@ TEST(RunReport, TerrainThatIsNoSoilNamesNone) {
 }
 
 TEST(RunReport, NamesTheFolderOnlyToWhomStartedTheRun) {
-  Json with_folder = Json::parse(summary_json_with_folder(summary()));
+  Json with_folder = summary_json_with_folder(summary());
   EXPECT_EQ(with_folder.items().front().name, "run_folder");
   EXPECT_EQ(with_folder["run_folder"], "out/hill-0001");
   with_folder.erase("run_folder");
