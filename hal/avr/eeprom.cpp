@@ -11,12 +11,12 @@ namespace screed {
 namespace avr {
 namespace {
 
-struct State {
+struct Writing {
   const uint8_t* next;
   uint16_t address;
   uint8_t left;
 };
-State state;
+Writing writing;
 
 }  // namespace
 
@@ -31,31 +31,28 @@ void eeprom_read(uint16_t address, uint8_t* bytes, uint8_t count) {
 }
 
 __attribute__((noinline)) void eeprom_write(uint16_t address, const uint8_t* bytes, uint8_t count) {
-  state.next = bytes;
-  state.address = address;
-  state.left = count;
+  writing.next = bytes;
+  writing.address = address;
+  writing.left = count;
 }
 
 bool eeprom_busy() {
-  return state.left != 0;
+  return writing.left != 0;
 }
 
 void eeprom_step() {
-  if (state.left == 0 || (EECR & _BV(EEPE)) != 0) return;
-  EEAR = state.address++;
-  EEDR = *state.next++;
+  if (writing.left == 0 || (EECR & _BV(EEPE)) != 0) return;
+  EEAR = writing.address++;
+  EEDR = *writing.next++;
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {  // EEPE counts within four cycles after EEMPE
     EECR = _BV(EEMPE);
     EECR = _BV(EEMPE) | _BV(EEPE);
   }
-  --state.left;
+  --writing.left;
 }
-
-}  // namespace avr
 
 // The parameters in the MCU's EEPROM.
 
-namespace avr {
 namespace {
 
 const Parameters kDefaults PROGMEM;
@@ -176,37 +173,34 @@ __attribute__((noinline)) void parameter_eeprom_step() {
   --state.copies;
 }
 
-}  // namespace avr
-
 // Key and number of starts in the EEPROM.
 
-namespace avr {
 namespace {
 
-struct State {
+struct Credential {
   Credentials in_force;
   CredentialRecord record;  // what is being written
 };
-State state;
+Credential credential;
 
 }  // namespace
 
 void credential_eeprom_init() {
-  eeprom_read(kCredentialRecordAddress, state.record.bytes, kCredentialRecordSize);
-  if (!begin_start(state.record, state.in_force)) return;
-  const uint8_t slot = epoch_slot_offset(state.in_force.boot_epoch);
-  eeprom_write(kCredentialRecordAddress + slot, state.record.bytes + slot, kEpochSlotSize);
+  eeprom_read(kCredentialRecordAddress, credential.record.bytes, kCredentialRecordSize);
+  if (!begin_start(credential.record, credential.in_force)) return;
+  const uint8_t slot = epoch_slot_offset(credential.in_force.boot_epoch);
+  eeprom_write(kCredentialRecordAddress + slot, credential.record.bytes + slot, kEpochSlotSize);
   while (eeprom_busy()) eeprom_step();
 }
 
 const Credentials& credentials() {
-  return state.in_force;
+  return credential.in_force;
 }
 
 bool credential_eeprom_store(const uint8_t (&key)[kKeySize]) {
   if (eeprom_busy()) return false;
-  put_key(state.record, key);
-  eeprom_write(kCredentialRecordAddress, state.record.bytes, kCredentialRecordSize);
+  put_key(credential.record, key);
+  eeprom_write(kCredentialRecordAddress, credential.record.bytes, kCredentialRecordSize);
   return true;
 }
 

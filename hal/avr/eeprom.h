@@ -20,11 +20,7 @@ bool eeprom_busy();
 /// Writes the next byte when the EEPROM is ready; called once a tick.
 void eeprom_step();
 
-}  // namespace avr
-
 // The parameters in the MCU's EEPROM, in the format of firmware/parameters/parameter_store.h.
-
-namespace avr {
 
 /// Reads the store; called once, before the others.
 void parameter_eeprom_init();
@@ -47,11 +43,7 @@ bool parameter_saving();
 /// Writes the next byte when the EEPROM is ready; called once a tick, never waits.
 void parameter_eeprom_step();
 
-}  // namespace avr
-
 // Key and number of starts in the EEPROM, in the format of firmware/security/key_store.h.
-
-namespace avr {
 
 /// Reads key and number, and writes the number of this start, 14 ms; called once, before the
 /// others.
