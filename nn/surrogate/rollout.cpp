@@ -11,21 +11,13 @@
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/session/export.h"
+#include "host_sim/run/world/world.h"
 #include "host_sim/run/world/world_setup.h"
 #include "host_sim/standin/coarse_ground.h"
 #include "host_sim/standin/standin_plant.h"
 #include "schema/values.h"
 
 namespace screed::nn {
-namespace {
-
-ImuErrors imu_errors(const Experiment& experiment) {
-  if (!experiment.sensors.noise) return ImuErrors::quiet();
-  return experiment.sensors.calibrated ? ImuErrors{} : ImuErrors::uncalibrated();
-}
-
-}  // namespace
-
 RecordedDrive::RecordedDrive(const std::filesystem::path& folder)
     : session(folder / "session.h5"), experiment(read_experiment(folder / "experiment.ini")) {
   if (!experiment.map.is_soil() || !session.has_heights()) {
@@ -93,9 +85,9 @@ DrivingState RecordedDrive::state(std::uint64_t row, double counts_per_turn) con
 
 RolloutRobot::RolloutRobot(const SessionInfo& info, const Experiment& experiment)
     : firmware_(info.board, info.parameters, info.credentials),
-      imu_(experiment.experiment.seed, imu_errors(experiment)),
+      imu_(experiment.experiment.seed, experiment.sensors.imu_errors()),
       counts_per_turn_(board_motor(info.board_name).counts_per_turn),
-      volt_per_lsb_(info.board.battery_uv_per_lsb * 1e-6) {}
+      board_(info.board) {}
 
 void RolloutRobot::follow(const SensorSample& recorded) {
   const ImuTruth at_rest{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
@@ -106,17 +98,9 @@ void RolloutRobot::follow(const SensorSample& recorded) {
 }
 
 SensorSample RolloutRobot::measure(const RobotView& robot, const SensorSample& recorded) {
-  const auto counts = [&](Side side) {
-    const double turns = robot.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
-    return static_cast<std::uint16_t>(
-        static_cast<std::int64_t>(std::floor(turns * counts_per_turn_)) & 0xFFFF);
-  };
   SensorSample sample = recorded;
   imu_.measure(robot.motion(), sample);
-  sample.encoder_left = counts(kLeft);
-  sample.encoder_right = counts(kRight);
-  sample.battery = static_cast<std::uint16_t>(
-      std::clamp(std::round(robot.battery().terminal_v / volt_per_lsb_), 0.0, double{kBatteryMax}));
+  measure_drive(robot, counts_per_turn_, board_, sample);
   return sample;
 }
 

@@ -76,7 +76,7 @@ class RolloutRobot {
   RobotOutput output_{};
   ImuModel imu_;
   double counts_per_turn_;
-  double volt_per_lsb_;
+  BoardConstants board_;
 };
 
 /// Distances after which robots are compared, m.

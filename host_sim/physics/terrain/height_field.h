@@ -1,4 +1,4 @@
-// A rigid surface z = f(x, y): integer heights on a square grid, bilinear in between.
+// A surface z = f(x, y): integer heights on a square grid, bilinear in between.
 // Knows neither robots nor soil. The integers are the truth (so volumes add up exactly and bits are
 // equal on every compiler); metres are derived from them.
 #pragma once

@@ -14,7 +14,7 @@
 
 namespace screed {
 
-/// True motion over the last tick.
+/// True motion: means over one control tick's time, ending when it is asked for.
 struct ImuTruth {
   Eigen::Vector3d mean_rate_rad_per_s;  ///< body frame
   Eigen::Vector3d mean_specific_force;  ///< body frame, m/s^2: acceleration minus gravity

@@ -148,7 +148,6 @@ int steps_in_tick(double physics_step_s) {
   return static_cast<int>(whole);
 }
 
-/// To the copy of a coordinate that is nearest to another one, on a bed that wraps around.
 /// From how far on robots are about to touch. What contact_ sees is a step old when it is asked,
 /// and counts for one: two steps in which they come nearer by no more than 1.5 m/s, and 5 mm since
 /// it sees them point by point.
@@ -158,6 +157,7 @@ double notice_m(double step_s) {
   return 2.0 * kFastest_m_per_s * step_s + kPoints_m;
 }
 
+/// To the copy of a coordinate that is nearest to another one, on a bed that wraps around.
 double to_nearest_copy(double coordinate, double from, double size_m) {
   return -size_m * std::round((coordinate - from) / size_m);
 }

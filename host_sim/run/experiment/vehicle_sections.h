@@ -13,6 +13,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/finite_number.h"
+#include "host_sim/devices/sensors/imu_model.h"
 #include "host_sim/ground_station/station/command_key.h"
 
 namespace screed {
@@ -177,6 +178,12 @@ struct SensorsSection {
   bool noise = true;
   bool calibrated = true;
   bool calibration_motion = false;
+
+  /// noise = false wins: an ideal IMU needs no calibration.
+  ImuErrors imu_errors() const {
+    if (!noise) return ImuErrors::quiet();
+    return calibrated ? ImuErrors{} : ImuErrors::uncalibrated();
+  }
 
   template <class Keys>
   static void list(Keys& keys) {

@@ -52,6 +52,11 @@ Eigen::Vector3d robot_position(const RobotView& robot) {
   return robot.vehicle().chassis().pose.translation();
 }
 
+double encoder_counts(const RobotView& robot, Side side, double counts_per_turn) {
+  const double turns = robot.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
+  return turns * counts_per_turn;
+}
+
 std::optional<uint64_t> tick_at(const std::optional<double>& time_s) {
   if (!time_s.has_value()) return std::nullopt;
   return static_cast<uint64_t>(std::llround(*time_s * kTickRate_hz));
@@ -88,8 +93,20 @@ void RobotDevices::exchange_radio(uint64_t now_us, const RobotView& robot) {
 }
 
 double RobotDevices::encoder_position(const RobotView& robot, Side side) const {
-  const double turns = robot.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
-  return turns * encoder_counts_per_turn_;
+  return encoder_counts(robot, side, encoder_counts_per_turn_);
+}
+
+void measure_drive(const RobotView& robot, double counts_per_turn, const BoardConstants& board,
+                   SensorSample& sample) {
+  const auto counts = [&](Side side) {
+    return static_cast<uint16_t>(
+        static_cast<int64_t>(std::floor(encoder_counts(robot, side, counts_per_turn))) & 0xFFFF);
+  };
+  sample.encoder_left = counts(kLeft);
+  sample.encoder_right = counts(kRight);
+  sample.battery = static_cast<uint16_t>(
+      std::clamp(std::round(robot.battery().terminal_v * 1e6 / board.battery_uv_per_lsb), 0.0,
+                 double{kBatteryMax}));
 }
 
 // Sensors, radio and motors of a native robot, tick by tick.
@@ -97,6 +114,7 @@ double RobotDevices::encoder_position(const RobotView& robot, Side side) const {
 NativeRobot::NativeRobot(const WorldOptions& options, Environment& plant, size_t number)
     : RobotController(options, plant, number),
       calibration_motion_(options.calibration_motion),
+      counts_per_turn_(options.encoder_counts_per_turn),
       firmware_(settings().board, settings().parameters, settings().credentials) {}
 
 void NativeRobot::begin_tick(uint64_t tick) {
@@ -116,16 +134,7 @@ void NativeRobot::end_step() {
 void NativeRobot::measure() {
   devices().imu().measure(
       calibration_motion_ ? calibration_motion(plant().time_s()) : robot().motion(), measured_);
-
-  const auto counts = [&](Side side) {
-    return static_cast<uint16_t>(
-        static_cast<int64_t>(std::floor(devices().encoder_position(robot(), side))) & 0xFFFF);
-  };
-  measured_.encoder_left = counts(kLeft);
-  measured_.encoder_right = counts(kRight);
-  measured_.battery = static_cast<uint16_t>(std::clamp(
-      std::round(robot().battery().terminal_v * 1e6 / settings().board.battery_uv_per_lsb), 0.0,
-      double{kBatteryMax}));
+  measure_drive(robot(), counts_per_turn_, settings().board, measured_);
   measured_.time_us = static_cast<uint32_t>(world_us());
 }
 

@@ -104,6 +104,10 @@ class RobotWatch {
   RobotWatch& operator=(const RobotWatch&) = default;
 };
 
+/// What firmware reads of encoders and battery at an end of a tick, into the sample.
+void measure_drive(const RobotView& robot, double encoder_counts_per_turn,
+                   const BoardConstants& board, SensorSample& sample);
+
 // Everything round one robot that is neither its bodies nor its microcontroller: IMU, encoders, the
 // radio with the ground station at its other end, and the events that an experiment scripts.
 //
@@ -244,6 +248,7 @@ class NativeRobot : public RobotController, private hal::Target {
   void write_outputs(const RobotOutput& output) override;
 
   bool calibration_motion_;
+  double counts_per_turn_;  ///< of the encoders
   Robot firmware_;
   uint64_t end_of_tick_steps_ = 0;  ///< the plant's, with which the tick ends
   SensorSample measured_{};

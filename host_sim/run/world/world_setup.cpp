@@ -106,9 +106,7 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   options.vehicle.track_friction = experiment.vehicle.track_friction;
   options.vehicle.chassis_friction = experiment.vehicle.chassis_friction;
   options.vehicle.wall_friction = experiment.map.wall_friction;
-  if (!experiment.sensors.calibrated) options.imu = ImuErrors::uncalibrated();
-  // noise = false wins: an ideal IMU needs no calibration.
-  if (!experiment.sensors.noise) options.imu = ImuErrors::quiet();
+  options.imu = experiment.sensors.imu_errors();
   options.calibration_motion = experiment.sensors.calibration_motion;
   options.radio.delay_s = experiment.radio.delay_s;
   options.radio.loss = experiment.radio.loss;
