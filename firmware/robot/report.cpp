@@ -38,7 +38,7 @@ void set_vector(CanFrame& frame, const int16_t (&vector)[3]) {
 void Robot::fill(CanFrame& frame, const SensorSample& sample) {
   const RobotStatus& robot = state_.status;
   const UplinkCounts& uplink = state_.uplink;
-  switch (e2e_data_id(frame.id)) {
+  switch (e2e_data_id(frame.id)) {  // a byte, and no two messages have the same
     case e2e_data_id(kIdHeartbeat): {
       message::Heartbeat it{};
       it.state = static_cast<uint8_t>(robot.state);
@@ -129,7 +129,7 @@ void Robot::fill(CanFrame& frame, const SensorSample& sample) {
       set(frame, message::Time{state_.time_ms, uplink.ground_time_ms});
       break;
     case e2e_data_id(kIdBaro):
-    default:
+    default:  // no other: whatever telemetry.cpp schedules has a case here
       set(frame, message::Baro{static_cast<uint32_t>(asr(sample.pressure, 4)), sample.temperature});
       break;
   }

@@ -1,5 +1,4 @@
-// State that the robot keeps from tick to tick and that supervisor, leveling and drive share.
-// Telemetry only reads it.
+// The robot: what it keeps from tick to tick, and what it does in one.
 #pragma once
 
 #include <stdint.h>
@@ -19,6 +18,9 @@
 #include "hal/sample.h"
 
 namespace screed {
+
+// State that the robot keeps from tick to tick and that supervisor, leveling and drive share.
+// Telemetry only reads it.
 
 struct RobotStatus {
   // Pose: asked for once a tick, since on the AVR an angle costs 1500 cycles and a deviation a

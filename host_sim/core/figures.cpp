@@ -35,7 +35,7 @@ std::string figure(const Json& figures, const std::string& field, std::size_t& n
   const std::size_t star = std::min(field.find('*'), colon);
   const Json& value = find(figures, field.substr(0, star), next);
   const bool is_text = colon == field.size() || field.back() == 's';
-  const std::string text = !is_text ? "" : value.is_string() ? value.text() : value.dump();
+  std::string text = !is_text ? "" : value.is_string() ? value.text() : value.dump();
   if (colon == field.size()) return text;
   const std::string form = "%" + field.substr(colon + 1);
   if (is_text) return printed(form, text.c_str());

@@ -1,5 +1,4 @@
-// One robot of the stand-in's world: motors and battery as they are, belts that move it, a body
-// that lies on the ground as its belts do.
+// The stand-in: robots on belts over soil, in closed form.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -20,6 +19,9 @@
 #include "host_sim/standin/planar_robot.h"
 
 namespace screed {
+
+// One robot of the stand-in's world: motors and battery as they are, belts that move it, a body
+// that lies on the ground as its belts do.
 
 /// What robots of one kind have in common.
 struct StandInKind {

@@ -1,8 +1,4 @@
-// What an IMU's raw measurements say about its errors: gyro bias at rest, accelerometer offset and
-// scale from six positions, magnetometer ellipsoid. Pure least squares; knows no robot and no link.
-//
-// Every fit refuses data that cannot tell what it is asked for, with one line for the person who
-// holds the robot.
+// Calibration of an IMU by hand: collecting the motions, and fitting the errors.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,6 +13,12 @@
 #include "firmware/protocol/slcan.h"
 
 namespace screed {
+
+// What an IMU's raw measurements say about its errors: gyro bias at rest, accelerometer offset and
+// scale from six positions, magnetometer ellipsoid. Pure least squares; knows no robot and no link.
+//
+// Every fit refuses data that cannot tell what it is asked for, with one line for the person who
+// holds the robot.
 
 /// Corrected = matrix * (raw - offset).
 struct VectorCorrection {

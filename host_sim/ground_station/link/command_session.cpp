@@ -1,4 +1,4 @@
-// A robot's answer to a command, in words.
+// Commands, and answers in words.
 #include "host_sim/ground_station/link/command_session.h"
 
 #include <optional>

@@ -1,5 +1,4 @@
-// A robot's answer to a command, in words: what it refused, in which state, and what to do about
-// it.
+// Commands to a robot from a program outside: sent, repeated, answered, and the answer in words.
 #pragma once
 
 #include <chrono>
@@ -15,6 +14,9 @@
 #include "host_sim/ground_station/telemetry/latest_telemetry.h"
 
 namespace screed {
+
+// A robot's answer to a command, in words: what it refused, in which state, and what to do about
+// it.
 
 struct CommandAnswer {
   uint8_t op = 0;

@@ -1,5 +1,4 @@
-// The serial ports of this machine that a radio module or a robot may be behind, for messages about
-// one that is not there.
+// A radio module or a robot behind a serial port.
 #pragma once
 
 #include <chrono>
@@ -16,6 +15,9 @@
 #include "host_sim/ground_station/link/xbee_api.h"
 
 namespace screed {
+
+// The serial ports of this machine that a radio module or a robot may be behind, for messages about
+// one that is not there.
 
 /// USB adapters and boards, serial lines over Bluetooth and of single-board computers, by name.
 /// `devices` holds the device files.

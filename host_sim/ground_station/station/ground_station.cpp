@@ -1,4 +1,4 @@
-// Position fixes of a simulated camera.
+// The simulated ground station, its camera, and its port.
 #include "host_sim/ground_station/station/ground_station.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The way that a footprint came.
+// Ways of footprints, and how far a body sinks.
 #include "host_sim/physics/soil/sinking.h"
 
 #include <Eigen/Geometry>

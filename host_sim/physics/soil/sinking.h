@@ -1,5 +1,4 @@
-// What a soil bed remembers of the way that a footprint came: a straight path in the footprint's
-// own axes. Soil below it has been pressed as deep as the footprint was on its path.
+// How far a body sinks: the way that a footprint came, and the balance of load and springs.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,6 +9,9 @@
 #include "host_sim/physics/terrain/footprint_contact.h"
 
 namespace screed {
+
+// What a soil bed remembers of the way that a footprint came: a straight path in the footprint's
+// own axes. Soil below it has been pressed as deep as the footprint was on its path.
 
 /// Of the height of a path.
 inline constexpr double kPathError_m = 2e-4;

@@ -1,3 +1,17 @@
+// A grid of soil: everything that is kept of a cell, the history of its contacts included.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "host_sim/physics/kernels/kernels.h"
+#include "host_sim/physics/terrain/height_field.h"
+
+namespace screed {
+
 // What a cell of soil remembers of the body on it: how its plastic sinkage is divided between the
 // part below the body and the rest. The heights of the grid know the sum alone. One history a cell:
 // when two bodies cover it in one step, the second replaces the share of the first.
@@ -18,18 +32,6 @@
 // In (3) c o' + B' = b o + B: what was there before the contact is kept as well. A new contact
 // knows no parts: assume that the old sinkage lies below this body, over the larger of both shares.
 //   new:    o' = S / max(c, b),        B' = S - c o'                                   (4)
-#pragma once
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
-#include "host_sim/physics/kernels/kernels.h"
-#include "host_sim/physics/terrain/height_field.h"
-
-namespace screed {
 
 /// A cell's plastic sinkage before this contact and beside the body, as (2) to (4) give it.
 struct SinkageDivision {

@@ -1,4 +1,4 @@
-// The particles of a bed as plain data, for those who record or draw them.
+// What every ground is to those who stand on it, record it or draw it.
 #pragma once
 
 #include <array>
@@ -11,6 +11,8 @@
 #include "host_sim/physics/terrain/height_field.h"
 
 namespace screed {
+
+// The particles of a bed as plain data, for those who record or draw them.
 
 /// Equal spheres; none on terrain that is not made of them.
 struct SphereSet {

@@ -1,11 +1,4 @@
-// The force between one point of a surface that may move (a belt, a wheel's rim, the chassis) and
-// rigid terrain.
-//
-// Normal: a spring and damper that never pull. Tangential: elastic bristles with Coulomb's limit:
-// the bristle is the distance that the surface has moved over the terrain while it stuck, so a
-// robot stands still on a slope instead of creeping. Along a moving belt the bristles travel with
-// its material (brush model; Pacejka, Tire and Vehicle Dynamics, ch. 3): the owner of the points
-// does that.
+// Contact with rigid terrain: of a point, and of a belt or wheel made of points.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,6 +11,15 @@
 #include "host_sim/physics/terrain/terrain.h"
 
 namespace screed {
+
+// The force between one point of a surface that may move (a belt, a wheel's rim, the chassis) and
+// rigid terrain.
+//
+// Normal: a spring and damper that never pull. Tangential: elastic bristles with Coulomb's limit:
+// the bristle is the distance that the surface has moved over the terrain while it stuck, so a
+// robot stands still on a slope instead of creeping. Along a moving belt the bristles travel with
+// its material (brush model; Pacejka, Tire and Vehicle Dynamics, ch. 3): the owner of the points
+// does that.
 
 struct ContactLaw {
   double stiffness = 0.0;  ///< N/m per point, normal and tangential alike

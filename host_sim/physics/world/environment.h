@@ -1,4 +1,4 @@
-// The motion that a robot's sensors measure, without their errors.
+// What robots are driven in, and what their sensors measure there, without the errors.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,6 +13,8 @@
 #include "host_sim/physics/vehicle/vehicle_state.h"
 
 namespace screed {
+
+// The motion that a robot's sensors measure, without their errors.
 
 /// True motion: means over one control tick's time, ending when it is asked for.
 struct ImuTruth {

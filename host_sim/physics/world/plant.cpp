@@ -1,4 +1,4 @@
-// One robot's bodies, motors and battery.
+// The robots of the plant, and its step.
 #include "host_sim/physics/world/plant.h"
 
 #include <algorithm>

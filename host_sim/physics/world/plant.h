@@ -1,5 +1,4 @@
-// One of the robots in a plant: its bodies, motors and battery, and the motion that its IMU will
-// have measured.
+// The world of ODE: its robots, and how they and the terrain are stepped together.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,6 +18,9 @@
 #include "host_sim/physics/world/plant_options.h"
 
 namespace screed {
+
+// One of the robots in a plant: its bodies, motors and battery, and the motion that its IMU will
+// have measured.
 
 class PlantRobot : public RobotView {
  public:

@@ -21,8 +21,8 @@
 
 namespace screed {
 
-// How a section of an experiment file lists its keys (sections/): kinds of keys, each with how its
-// value is read, checked, written back and described.
+// How a section of an experiment file lists its keys (ground_sections.h, vehicle_sections.h): kinds
+// of keys, each with how its value is read, checked, written back and described.
 
 /// Puts the keys of one section at the end of a table. A key's `field` is a member of Section, or a
 /// function from Section& to a reference; of a std::optional nothing is written back while it is

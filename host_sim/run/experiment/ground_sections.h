@@ -194,7 +194,7 @@ struct PhysicsSection {
 
 // [trap] of an experiment file: a place that the robot does not get out of, in front of its start.
 
-/// The names of [trap] kind; the first is that of no trap (trap.cpp).
+/// The names of [trap] kind; the first is that of no trap (placement.cpp).
 std::vector<std::string> trap_kinds();
 
 struct TrapSection {

@@ -1,4 +1,4 @@
-// A curve with as many samples as a screen can show, and none of its peaks lost.
+// Curves and path of a run as a page shows them.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,8 @@
 #include "host_sim/render/report/page_file.h"
 
 namespace screed {
+
+// A curve with as many samples as a screen can show, and none of its peaks lost.
 
 /// Which ticks the samples of a curve stand for. A run of up to kMaxSamples ticks keeps them all.
 /// A longer one is cut into buckets of equal numbers of ticks, the last one shorter; each gives two

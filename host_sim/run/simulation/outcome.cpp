@@ -1,4 +1,4 @@
-// Names of states and faults, looked up in the schema.
+// Names, measures and ends of a run.
 #include "host_sim/run/simulation/outcome.h"
 
 #include <algorithm>

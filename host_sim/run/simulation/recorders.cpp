@@ -1,4 +1,4 @@
-// Comparing the tiles that were written to.
+// What goes into a session: heights by the tiles that were written to, frames, maps.
 #include "host_sim/run/simulation/recorders.h"
 
 #include <algorithm>

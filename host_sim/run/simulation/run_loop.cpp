@@ -1,4 +1,4 @@
-// Sleeping to a point in time, so that errors of single sleeps do not add up.
+// The loop, its pace and its progress.
 #include "host_sim/run/simulation/run_loop.h"
 
 #include <thread>

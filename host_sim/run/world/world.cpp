@@ -1,4 +1,4 @@
-// What surrounds a robot, tick by tick.
+// A world of robots: their devices, native brains, and the step of all.
 #include "host_sim/run/world/world.h"
 
 #include <algorithm>
@@ -114,7 +114,6 @@ void measure_drive(const RobotView& robot, double counts_per_turn, const BoardCo
 NativeRobot::NativeRobot(const WorldOptions& options, Environment& plant, size_t number)
     : RobotController(options, plant, number),
       calibration_motion_(options.calibration_motion),
-      counts_per_turn_(options.encoder_counts_per_turn),
       firmware_(settings().board, settings().parameters, settings().credentials) {}
 
 void NativeRobot::begin_tick(uint64_t tick) {
@@ -134,7 +133,7 @@ void NativeRobot::end_step() {
 void NativeRobot::measure() {
   devices().imu().measure(
       calibration_motion_ ? calibration_motion(plant().time_s()) : robot().motion(), measured_);
-  measure_drive(robot(), counts_per_turn_, settings().board, measured_);
+  measure_drive(robot(), devices().encoder_counts_per_turn(), settings().board, measured_);
   measured_.time_us = static_cast<uint32_t>(world_us());
 }
 

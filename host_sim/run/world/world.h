@@ -130,6 +130,7 @@ class RobotDevices {
   /// Of a side's encoder, counts since the robot was built; rises when the track drives forward.
   /// The counter shows the whole counts below it.
   double encoder_position(const RobotView& robot, Side side) const;
+  double encoder_counts_per_turn() const { return encoder_counts_per_turn_; }
 
   ImuModel& imu() { return imu_; }
   RadioLink& uplink() { return uplink_; }      ///< to the robot
@@ -248,7 +249,6 @@ class NativeRobot : public RobotController, private hal::Target {
   void write_outputs(const RobotOutput& output) override;
 
   bool calibration_motion_;
-  double counts_per_turn_;  ///< of the encoders
   Robot firmware_;
   uint64_t end_of_tick_steps_ = 0;  ///< the plant's, with which the tick ends
   SensorSample measured_{};

@@ -133,11 +133,11 @@ std::vector<Offer> offers_after(const CommandNode& root, const std::vector<std::
                                     [&](const CommandNode& it) { return it.name == word; });
     if (due != nullptr) {
       if (word != "=") due = nullptr;  // --option=value comes from bash as three words
-    } else if (due = option_with_value(word); due != nullptr) {
       continue;
-    } else if (word.starts_with('-') || (i == 0 && word == "help")) {
-      continue;
-    } else if (below != node->subcommands.end()) {
+    }
+    due = option_with_value(word);
+    if (due != nullptr || word.starts_with('-') || (i == 0 && word == "help")) continue;
+    if (below != node->subcommands.end()) {
       node = &*below;
       options = all_options(*node);
       place = 0;
