@@ -269,7 +269,8 @@ CampaignFile benchmark_campaign(const Benchmark& benchmark, const BenchmarkChoic
       for (const IniEntry& entry : found->second) {
         const bool duration = entry.section == "experiment" && entry.key == "duration";
         has_duration = has_duration || duration;
-        entries.push_back({factor + " " + level, entry.section + "." + entry.key,
+        const std::string place = std::string(factor).append(" ").append(level);
+        entries.push_back({place, entry.section + "." + entry.key,
                            duration && suite->second.duration_s.has_value()
                                ? shortest(*suite->second.duration_s)
                                : entry.value,
