@@ -88,7 +88,8 @@ TEST_F(Program, DocsNameKeysThatThereAre) {
       const std::string key = at->str(2) + at->str(4);
       if (sections.count(section) == 0 || key == "KEY") continue;
       ++mentions;
-      EXPECT_EQ(keys.count(section + "." + key), 1U) << file << ": " << at->str();
+      EXPECT_EQ(keys.count(std::string(section).append(".").append(key)), 1U)
+          << file << ": " << at->str();
     }
   }
   EXPECT_GT(mentions, 60U);
