@@ -17,7 +17,7 @@ WARNINGS := -w
 
 # Bytes of the radio and of a console; CAN frames; keys and parameters as an EEPROM holds them.
 ASAN_UNIT := command command_key command_session corruption ground_station host_hal key_command \
-  link messages parameters radio_link robot robot_downlink robot_history security protocol \
+  link parameters radio_link robot robot_downlink robot_history security protocol \
   supervisor supervisor_fault telemetry track_slip
 # Files: logs, schemas, experiments, images, meshes, robots, sessions, models, listings of an image.
 ASAN_UNIT += attitude_command avr_order avr_stack board_table candump_log content_hash decode \
