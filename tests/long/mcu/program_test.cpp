@@ -171,7 +171,8 @@ TEST_F(McuProgram, SaysWhatIsMissing) {
     EXPECT_FALSE(std::filesystem::exists(root_ / "out"));
   };
   refused("sim " + first_drive() + " --hal mcu --elf none.elf", "make firmware");
-  refused("sim " + first_drive() + " --hal mcu --elf stdout", "not an ELF image");
+  write("text.elf", "no image\n");
+  refused("sim " + first_drive() + " --hal mcu --elf text.elf", "not an ELF image");
   refused("sim " + first_drive() + " --hal mcu --board unheard_of", "unheard_of");
   refused("sim " + first_drive() + " --elf none.elf", "--hal mcu");
   refused("sim " + first_drive() + " --hal cloud", "--hal");
