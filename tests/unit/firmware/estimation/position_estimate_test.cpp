@@ -1,5 +1,4 @@
-// Dead reckoning on paths whose end is known, its deviation, and measurements that correct it.
-
+// The position: dead reckoning, its deviation, and the walls that correct it.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <numbers>
@@ -11,6 +10,8 @@
 namespace screed {
 
 namespace {
+
+// Dead reckoning on paths whose end is known, its deviation, and measurements that correct it.
 
 constexpr uint16_t kCount_um_q4 = 9048;
 constexpr double kCount_mm = 9048.0 / 16000.0;
@@ -202,11 +203,7 @@ TEST(PositionEstimate, AResetKnowsThePlaceForSure) {
   EXPECT_EQ(place.sigma[kY], 0);
 }
 
-}  // namespace
-
 // Where a robot is that touches a wall.
-
-namespace {
 
 constexpr int kDegree = 65536 / 360;
 

@@ -1,5 +1,4 @@
-// Random places of a site.
-
+// The site: random places of it, and its fence.
 #include <gtest/gtest.h>
 #include <array>
 #include <cmath>
@@ -12,6 +11,8 @@
 namespace screed {
 
 namespace {
+
+// Random places of a site.
 
 constexpr int16_t kFromEdge_mm = 115;
 constexpr int kDraws = 4000;
@@ -76,11 +77,7 @@ TEST_F(SitePlaces, AtTheEdgeLieOnAllFourSidesAllAlong) {
   }
 }
 
-}  // namespace
-
 // The fence: where it stands, and that its motion leads home.
-
-namespace {
 
 Parameters site(int16_t radius_mm) {
   Parameters parameters;

@@ -1,5 +1,4 @@
-// Fixed-point math against long double and against wider integers.
-
+// Fixed-point arithmetic and units.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <array>
@@ -18,6 +17,8 @@
 namespace screed {
 
 namespace {
+
+// Fixed-point math against long double and against wider integers.
 
 constexpr long double kPi = std::numbers::pi_v<long double>;
 constexpr std::int32_t kMin = std::numeric_limits<std::int32_t>::min();
@@ -225,11 +226,7 @@ TEST(QuaternionMath, DotOfClippedCountsFits) {
   EXPECT_EQ(dot_q14(row, low), -3 * 9459 * 32768);
 }
 
-}  // namespace
-
 // Conversions against exact arithmetic, over their whole ranges.
-
-namespace {
 
 TEST(Units, TicksAreWholeAndRoundedDown) {
   for (int32_t ms = 0; ms <= INT16_MAX; ++ms)

@@ -1,5 +1,4 @@
-// The parameter table: defaults, ranges, and the two faces of it.
-
+// Parameters: their table, and their store.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <set>
@@ -13,6 +12,8 @@
 namespace screed {
 
 namespace {
+
+// The parameter table: defaults, ranges, and the two faces of it.
 
 TEST(Parameters, DefaultsAreValidAndThoseOfTheTable) {
   const Parameters parameters;
@@ -86,12 +87,8 @@ TEST(Parameters, AsUnsafeOnesAreOffByDefault) {
   EXPECT_GT(parameters.battery_low(), 0);
 }
 
-}  // namespace
-
 // The parameters as bytes of an EEPROM: round trip, every single wrong bit, torn writes, choice
 // between the copies.
-
-namespace {
 
 Parameters unusual() {
   Parameters parameters;

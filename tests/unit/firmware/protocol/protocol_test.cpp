@@ -1,5 +1,4 @@
-// End-to-end protection against AUTOSAR's published vectors, and what it must find.
-
+// The protocol: protection end to end, packing, lines of text.
 #include <gtest/gtest.h>
 #include <cstring>
 #include <initializer_list>
@@ -15,6 +14,8 @@
 namespace screed {
 
 namespace {
+
+// End-to-end protection against AUTOSAR's published vectors, and what it must find.
 
 constexpr uint16_t kAllIds[] = {kIdGroundHeartbeat, kIdEmergencyStop, kIdHeartbeat, kIdCommand,
                                 kIdCommandAck,      kIdAttitude,      kIdLeveling,  kIdEncoders,
@@ -184,11 +185,7 @@ TEST(E2e, DataIdsOfTheMessagesDiffer) {
   EXPECT_EQ(ids.size(), messages().size());
 }
 
-}  // namespace
-
 // Packing of message fields.
-
-namespace {
 
 TEST(Messages, NumbersAreLittleEndian) {
   uint8_t bytes[4];
@@ -235,11 +232,7 @@ TEST(Messages, DriveArgumentLayout) {
   EXPECT_EQ(bytes[2], 0xFF);
 }
 
-}  // namespace
-
 // SLCAN lines: round trip, and everything that is not exactly a data frame.
-
-namespace {
 
 std::string line_of(const CanFrame& frame) {
   uint8_t line[kSlcanLineMax];

@@ -1,5 +1,4 @@
-// How a robot takes the counts of its IMU: calibrated, and only new ones.
-
+// What a robot notices of its parts: IMU, motors and encoders, slip.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <cstdlib>
@@ -12,6 +11,8 @@
 namespace screed {
 
 namespace {
+
+// How a robot takes the counts of its IMU: calibrated, and only new ones.
 
 TEST(RobotImu, OffsetsOfTheImuAreTakenOffBeforeTheEstimate) {
   Parameters parameters;
@@ -150,12 +151,8 @@ TEST(RobotImu, ARateThatStaysIsBiasOnlyWhileBothTracksRest) {
   EXPECT_GT(turned(1, 1), 8.0);
 }
 
-}  // namespace
-
 // Faults of motors and encoders, with the whole robot in the loop: how long it takes until the
 // motors have no power. docs/mcu-simulation.md lists them.
-
-namespace {
 
 int ms_until_fault(TestRobot& robot) {
   int ticks = 0;
@@ -240,11 +237,7 @@ TEST(DriveFaults, AWellRobotMayReverseAsItLikes) {
   }
 }
 
-}  // namespace
-
 // The supervisor's witnesses of a track that does not move and of chips that fail.
-
-namespace {
 
 TEST(TrackWatch, CountsStepToAndFroWithABrokenWire) {
   for (const int16_t duty : std::initializer_list<int16_t>{60, 240, -60, -400}) {

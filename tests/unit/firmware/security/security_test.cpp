@@ -1,7 +1,4 @@
-// SipHash-2-4 against the 64 vectors its authors publish (vectors.h of their reference
-// implementation): key 00 01 .. 0F, message 00 01 .. of every length from 0 to 63. OpenSSL gives
-// the same: openssl mac -macopt hexkey:000102030405060708090a0b0c0d0e0f -macopt size:8 SIPHASH
-
+// The security of commands: MAC, gate, key.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <array>
@@ -21,6 +18,10 @@
 namespace screed {
 
 namespace {
+
+// SipHash-2-4 against the 64 vectors its authors publish (vectors.h of their reference
+// implementation): key 00 01 .. 0F, message 00 01 .. of every length from 0 to 63. OpenSSL gives
+// the same: openssl mac -macopt hexkey:000102030405060708090a0b0c0d0e0f -macopt size:8 SIPHASH
 
 constexpr std::array<const char*, 64> kVectors = {
     "310E0EDD47DB6F72", "FD67DC93C539F874", "5A4FA9D909806C0D", "2D7EFBD796666785",
@@ -59,11 +60,7 @@ TEST(SipHash, PublishedVectors) {
   }
 }
 
-}  // namespace
-
 // Who gets through the gate: the holder of the key, once a command, in order.
-
-namespace {
 
 /// The robot's heartbeat as far as the signer reads it.
 CanFrame heartbeat(uint16_t epoch, uint16_t counter) {
@@ -254,11 +251,7 @@ TEST(CommandGate, AGateThatOpensAgainForgivesAsManyAsANewOne) {
   }
 }
 
-}  // namespace
-
 // Key and boot epoch as bytes of an EEPROM.
-
-namespace {
 
 TEST(Crc16, CatalogueValue) {
   const uint8_t digits[] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};

@@ -1,5 +1,4 @@
-// Quantiles of small samples, by hand.
-
+// Statistics against published tables and other programs.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,8 @@
 namespace screed {
 
 namespace {
+
+// Quantiles of small samples, by hand.
 
 TEST(Quantile, IsTheOrderStatisticWhereTheShareMeetsOne) {
   const std::vector<double> values = {30.0, 10.0, 50.0, 20.0, 40.0};
@@ -30,11 +31,7 @@ TEST(Quantile, OfOneValueIsThatValueAndOfNoneNothing) {
   EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
 }
 
-}  // namespace
-
 // Confidence intervals against published tables and another program.
-
-namespace {
 
 TEST(Intervals, WilsonsIsThatOfTheTables) {
   // Newcombe, Statistics in Medicine 17 (1998), table I, method 3.
@@ -71,11 +68,7 @@ TEST(Intervals, WilsonsAgreesWithAnotherProgram) {
   EXPECT_NEAR(all.high, 1.0, 1e-12);
 }
 
-}  // namespace
-
 // Statistics of paired runs against SciPy 1.10, enumeration and published examples.
-
-namespace {
 
 const std::vector<double> kEven = {1.2, 0.4, -0.3, 2.2, 1.9, 0.05, 0.7, -1.1, 3.4, 0.9, 0.2, 1.4};
 const std::vector<double> kSkewed = {0.1, 0.2, 0.15, 0.3, 0.12, 5.0, 0.22, 0.4, 9.0, 0.18};

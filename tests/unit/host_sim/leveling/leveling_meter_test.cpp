@@ -1,5 +1,4 @@
-// Points of a curve from known surfaces.
-
+// Measures of leveling: points of a curve, robot scale, transport.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,8 @@
 namespace screed {
 
 namespace {
+
+// Points of a curve from known surfaces.
 
 /// A wave over a bed that repeats.
 HeightField wave(double amplitude_m) {
@@ -75,11 +76,7 @@ TEST(LevelingMeter, FromLevelGroundThereIsNoProgress) {
   EXPECT_TRUE(std::isnan(start.progress));
 }
 
-}  // namespace
-
 // Surfaces whose figures follow from closed forms: plane, wave, step.
-
-namespace {
 
 using std::numbers::pi;
 
@@ -182,11 +179,7 @@ TEST(RobotScale, RefusesALimitThatIsNone) {
   EXPECT_THROW(robot_scale_figures(flat, 90.0), InputError);
 }
 
-}  // namespace
-
 // Transports whose least work is known: shifted blocks, waves, and every plan of a small problem.
-
-namespace {
 
 using std::numbers::pi;
 

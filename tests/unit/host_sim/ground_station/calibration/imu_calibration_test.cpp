@@ -1,5 +1,4 @@
-// The calibration's fits: known errors are found again, data that cannot tell them are refused.
-
+// Calibration of an IMU: its fits, and a whole one without a radio.
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 #include <cmath>
@@ -18,6 +17,8 @@
 namespace screed {
 
 namespace {
+
+// The calibration's fits: known errors are found again, data that cannot tell them are refused.
 
 Eigen::Vector3d noise(WorldRandom& random, double sigma) {
   const double x = random.normal();
@@ -197,11 +198,7 @@ TEST(GyroFit, TheBiasIsTheMeanAtRest) {
   EXPECT_NE(refusal([&] { fit_gyro(samples, 0.5); }).find("only 5 samples"), std::string::npos);
 }
 
-}  // namespace
-
 // A whole calibration without a radio: the simulated IMU in the simulated person's hands.
-
-namespace {
 
 template <class Message>
 CanFrame frame_with(const int16_t (&counts)[3]) {

@@ -1,5 +1,4 @@
-// The ground station's side of a link, against a robot's own gate behind a link that can fail.
-
+// Commands and their answers.
 #include <gtest/gtest.h>
 #include <deque>
 
@@ -13,6 +12,8 @@
 namespace screed {
 
 namespace {
+
+// The ground station's side of a link, against a robot's own gate behind a link that can fail.
 
 using Result = message::CommandAckResult;
 
@@ -302,11 +303,7 @@ TEST_F(CommandSessionTest, TheEmergencyStopNeedsNoRobot) {
   EXPECT_TRUE(e2e_check(kIdEmergencyStop, robot_.sent[0].data, robot_.sent[0].size));
 }
 
-}  // namespace
-
 // Answers to commands in words: state, reason, remedy.
-
-namespace {
 
 using State = message::HeartbeatState;
 using Fault = message::HeartbeatFaults;

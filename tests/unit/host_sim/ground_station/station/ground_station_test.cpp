@@ -1,5 +1,4 @@
-// The simulated ground station: what it sends when, and the log that others must be able to read.
-
+// The simulated ground station, and its camera's fixes.
 #include <gtest/gtest.h>
 #include <regex.h>  // POSIX: gcc 12 warns of std::regex under the sanitizers
 #include <cmath>
@@ -14,6 +13,8 @@
 namespace screed {
 
 namespace {
+
+// The simulated ground station: what it sends when, and the log that others must be able to read.
 
 std::vector<uint8_t> line_of(CanFrame frame, uint8_t counter = 0) {
   e2e_protect(frame.id, counter, frame.data, frame.size);
@@ -224,11 +225,7 @@ TEST(GroundStation, WithAnotherKeyTheRobotStaysDisarmed) {
   EXPECT_EQ(ground.report().answer->result, static_cast<uint8_t>(RequestResult::kLockedOut));
 }
 
-}  // namespace
-
 // Position fixes of the simulated camera.
-
-namespace {
 
 struct Fixes {
   std::vector<std::uint64_t> ticks;

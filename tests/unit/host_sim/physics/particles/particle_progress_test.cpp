@@ -1,5 +1,4 @@
-// What computes a bed: kernels, threads. (That each gives the same bits: tests/long.)
-
+// A bed of particles: what computes it, and what it reports while it is made.
 #include <gtest/gtest.h>
 #include <Eigen/Core>
 #include <atomic>
@@ -22,6 +21,8 @@
 namespace screed {
 
 namespace {
+
+// What computes a bed: kernels, threads. (That each gives the same bits: tests/long.)
 
 TEST(ParticleKernel, TheFastestOfTheProcessorIsTheDefault) {
   EXPECT_EQ(instruction_sets().front(), InstructionSet::kBaseline);
@@ -78,11 +79,7 @@ TEST(ThreadTeam, DoesEachPartOnce) {
   }
 }
 
-}  // namespace
-
 // What a bed of particles reports while it is made, and that it can be stopped there.
-
-namespace {
 
 using Reports = std::vector<std::pair<std::string, double>>;
 

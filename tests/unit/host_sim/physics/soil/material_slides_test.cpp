@@ -1,5 +1,4 @@
-// Slopes that slide: at the edges of fields of all sizes, across seams, in small portions.
-
+// Where material goes: slopes that slide, and what is carried past a footprint.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,8 @@
 namespace screed {
 
 namespace {
+
+// Slopes that slide: at the edges of fields of all sizes, across seams, in small portions.
 
 /// A field without wrap-around, or with it, on which one node is raised: settled.
 MaterialFlow settled_peak(int nx, int ny, bool wrap, int ix, int iy, Height units) {
@@ -132,11 +133,7 @@ TEST(MaterialSlides, ANodeThatWaitsAlreadyDoesNotWaitTwice) {
   EXPECT_EQ(flow.queued(), 25U);
 }
 
-}  // namespace
-
 // What is dug and carried past a footprint: how the places found for it share it.
-
-namespace {
 
 constexpr double kFine_m = 0.0005;
 

@@ -1,5 +1,4 @@
-// How a cell divides its plastic sinkage between what a body covers and the rest.
-
+// Cells of soil: their history, their numbers, and that the grid does not show.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <limits>
@@ -13,6 +12,8 @@
 namespace screed {
 
 namespace {
+
+// How a cell divides its plastic sinkage between what a body covers and the rest.
 
 constexpr double kSunk_m = 0.004;
 constexpr double kTolerance_m = 1e-9;  // of the floats it keeps, a ten-millionth of the sinkage
@@ -110,11 +111,7 @@ TEST(CellHistory, DividingNeitherMakesNorLosesSinkage) {
   }
 }
 
-}  // namespace
-
 // Cells of soil by number and by place.
-
-namespace {
 
 TEST(SoilGrid, ACellIsFoundAcrossTheEdgeOfAFieldThatRepeatsAndNotOfOneThatDoesNot) {
   const SoilGrid wrapped(HeightField(5, 5, 0.01, true), 0);
@@ -145,12 +142,8 @@ TEST(SoilGrid, AHeightIsSetThroughAPlaceThatTheFieldRepeats) {
   EXPECT_EQ(grid.reference(14), 42);
 }
 
-}  // namespace
-
 // The grid must not show: what a body meets is the same across the seam of a bed that repeats, in
 // all four directions of the grid, and mirrored; at the edge of a bed nothing is met beyond it.
-
-namespace {
 
 constexpr double kSpacing_m = 0.005;
 constexpr int kNodes = 64;

@@ -1,5 +1,4 @@
-// The table of soil parameters and the named soils.
-
+// Parameters of soils, and the stress below a wheel.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <cstdlib>
@@ -15,6 +14,8 @@
 namespace screed {
 
 namespace {
+
+// The table of soil parameters and the named soils.
 
 std::string refusal(const SoilParameters& soil) {
   try {
@@ -133,11 +134,7 @@ TEST(NameList, IsReadByPeople) {
   EXPECT_EQ(name_list({"a", "b", "c"}), "a, b, c");
 }
 
-}  // namespace
-
 // The stress below a wheel as a lift of its points, against Wong and Reece's formulas written out.
-
-namespace {
 
 TEST(WheelStressTest, PointsBehindTheGreatestStressBearAsThoseAhead) {
   SoilParameters soil;

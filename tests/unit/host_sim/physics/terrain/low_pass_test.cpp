@@ -1,5 +1,4 @@
-// The low-pass against its definition and against what is known in closed form.
-
+// The low-pass, and terrain after it.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,8 @@
 namespace screed {
 
 namespace {
+
+// The low-pass against its definition and against what is known in closed form.
 
 using std::numbers::pi;
 
@@ -129,11 +130,7 @@ TEST(GaussianFilter, KeepsTheSumUnlessTheEdgeSampleIsRepeated) {
   EXPECT_GT(std::abs(change_of_sum(FilterEdge::kRepeated)), 0.1);
 }
 
-}  // namespace
-
 // Mean planes, and terrain after a low-pass.
-
-namespace {
 
 using std::numbers::pi;
 

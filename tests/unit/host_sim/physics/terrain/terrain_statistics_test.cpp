@@ -1,5 +1,4 @@
-// Statistics of surfaces whose figures are known in closed form.
-
+// Statistics of surfaces, and moved volumes.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,8 @@
 namespace screed {
 
 namespace {
+
+// Statistics of surfaces whose figures are known in closed form.
 
 using std::numbers::pi;
 
@@ -130,11 +131,7 @@ TEST(TerrainStatisticsTest, RefusesEpsilonOutOfRange) {
   }
 }
 
-}  // namespace
-
 // Volumes of moved boxes.
-
-namespace {
 
 constexpr double kSpacing_m = 0.01;
 

@@ -1,5 +1,4 @@
-// The motor against its data sheet.
-
+// Motor and battery.
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -8,6 +7,8 @@
 namespace screed {
 
 namespace {
+
+// The motor against its data sheet.
 
 TEST(GearMotor, MeetsTheDataSheet) {
   const GearMotor motor;
@@ -27,11 +28,7 @@ TEST(GearMotor, IsSymmetricAndBrakesAsAGenerator) {
   EXPECT_LT(motor.efficiency, 1.0);
 }
 
-}  // namespace
-
 // The battery against the discharge curve of its cells and Ohm's law.
-
-namespace {
 
 /// Draws a current, the electronics' included.
 void draw(Battery& battery, double current_a, int seconds) {

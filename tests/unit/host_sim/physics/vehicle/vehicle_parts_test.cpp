@@ -1,5 +1,4 @@
-// The cyclic block elimination against Eigen's dense solver.
-
+// Parts of a vehicle: the chain's solver, the hull, ODE itself.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
@@ -17,6 +16,8 @@
 namespace screed {
 
 namespace {
+
+// The cyclic block elimination against Eigen's dense solver.
 
 TEST(ChainSolver, AgreesWithADenseSolver) {
   WorldRandom random(7, "chain");
@@ -50,11 +51,7 @@ TEST(ChainSolver, AgreesWithADenseSolver) {
   }
 }
 
-}  // namespace
-
 // What a body has beside its running gear, on soft ground.
-
-namespace {
 
 // A hull is smooth: cohesive soil does not stick to it, and holds it by no more than Coulomb's
 // friction of the hull.
@@ -90,11 +87,7 @@ TEST(Hull, SlidesOverCohesiveSoilByItsOwnFriction) {
   EXPECT_GT(-reaction.force.x(), 0.9 * kFriction * reaction.normal_load);
 }
 
-}  // namespace
-
 // What ODE and other foreign libraries compute with.
-
-namespace {
 
 /// The function that a shared library of this program gets by this name.
 template <typename Call>

@@ -1,5 +1,4 @@
-// CSV files: cells, what is left out, and what is refused.
-
+// Tables of experiments, and the CSV files that hold them.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <set>
@@ -14,6 +13,8 @@
 namespace screed {
 
 namespace {
+
+// CSV files: cells, what is left out, and what is refused.
 
 using Cells = std::vector<std::string>;
 
@@ -76,12 +77,8 @@ TEST_F(CsvFile, WhatIsNoTableIsRefusedWithItsLine) {
   EXPECT_THROW(read_csv_file(folder_.path()), InputError);
 }
 
-}  // namespace
-
 // Tables of experiments: what a row's experiment is, every complaint, and the tables that come with
 // the project.
-
-namespace {
 
 class ExperimentTable : public ::testing::Test {
  protected:

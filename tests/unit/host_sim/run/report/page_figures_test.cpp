@@ -1,5 +1,4 @@
-// Curves of the page: all ticks of a short run, the extremes of a long one.
-
+// What a page shows of a run: curves, and the terrain over time.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,8 @@
 namespace screed {
 
 namespace {
+
+// Curves of the page: all ticks of a short run, the extremes of a long one.
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -59,11 +60,7 @@ TEST(CurveSampler, PassesOverWhatIsNoNumber) {
   EXPECT_TRUE(std::isnan(samples[3]));
 }
 
-}  // namespace
-
 // The terrain over time as the page gets it: read back as the page reads it.
-
-namespace {
 
 HeightMapGeometry grid_of(std::uint32_t nx, std::uint32_t ny) {
   return {nx, ny, kHeightUnit_m, 0.01, -1.0, -2.0, false, false};

@@ -1,5 +1,4 @@
-// The frames of a session as CSV.
-
+// A session's frames as CSV, and its content hash.
 #include <sys/resource.h>
 #include <bit>
 #include <cmath>
@@ -15,6 +14,8 @@
 namespace screed {
 
 namespace {
+
+// The frames of a session as CSV.
 
 TEST_F(SessionTest, CsvHasAllNumbersExactly) {
   const Recording run = random_run(1300);
@@ -92,11 +93,7 @@ TEST_F(SessionTest, CsvThatCannotBeWrittenIsARunErrorAndLeavesNothing) {
   EXPECT_EQ(std::distance(fs::directory_iterator(base_), {}), 2);  // and nothing half-written
 }
 
-}  // namespace
-
 // The content hash of a session: what it covers, and what it does not.
-
-namespace {
 
 TEST_F(SessionTest, TheHashCoversEveryByteOfEveryRow) {
   Recording run = random_run(1);

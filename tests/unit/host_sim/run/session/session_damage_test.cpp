@@ -1,5 +1,4 @@
-// Files that are no session, or a damaged, older or newer one: one line says so.
-
+// Sessions that are damaged, or that cannot be written.
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
@@ -14,6 +13,8 @@
 namespace screed {
 
 namespace {
+
+// Files that are no session, or a damaged, older or newer one: one line says so.
 
 TEST_F(SessionTest, FilesThatAreNoSessionAreRefused) {
   expect_refused("no such file");
@@ -161,11 +162,7 @@ TEST_F(SessionTest, TooManyRadioBytesAreRefused) {
               "row 1: 89 radio bytes");
 }
 
-}  // namespace
-
 // What goes wrong while a session is being written: full disks, killed programs.
-
-namespace {
 
 TEST_F(SessionTest, AnExistingFileIsNotOverwritten) {
   write_text(file_, "precious");

@@ -1,5 +1,4 @@
-// Names of states and faults as summaries, pictures and the viewer show them.
-
+// What becomes of a run: names, terrain, end, measures.
 #include <gtest/gtest.h>
 #include <array>
 #include <cmath>
@@ -17,6 +16,8 @@
 namespace screed {
 
 namespace {
+
+// Names of states and faults as summaries, pictures and the viewer show them.
 
 TEST(Names, StatesAndFaultsAreCalledWhatTheSchemaCallsThem) {
   size_t states = 0;
@@ -50,11 +51,7 @@ TEST(Names, FaultsAreListedInTheirOrder) {
   EXPECT_EQ(fault_names(Fault::kStuck | Fault::kTilt), "tilt, stuck");
 }
 
-}  // namespace
-
 // What a run did to its terrain, on soil and on particles.
-
-namespace {
 
 using std::numbers::pi;
 
@@ -122,11 +119,7 @@ TEST(TerrainMeasure, TellsBeforeFromAfter) {
   EXPECT_DOUBLE_EQ(outcome.change.deepest_fill_m, 200000 * kHeightUnit_m);
 }
 
-}  // namespace
-
 // When a run ends, and which reason it gives.
-
-namespace {
 
 Experiment lasting(double duration_s) {
   Experiment experiment;
@@ -235,11 +228,7 @@ TEST(LeftBed, AnyGroundEndsAtItsEdges) {
   EXPECT_TRUE(left_bed(flat(), Plant(flat(), rover5(), held_at(1.1, 0.0)).robot(0)));
 }
 
-}  // namespace
-
 // When a run is measured, and what of.
-
-namespace {
 
 constexpr double kTread_m = 0.2;
 

@@ -1,5 +1,4 @@
-// From ticks to the session file and the path.
-
+// What is left of a run: session, path, folder, telemetry log.
 #include <gtest/gtest.h>
 
 #include "host_sim/core/errors.h"
@@ -11,6 +10,8 @@
 namespace screed {
 
 namespace {
+
+// From ticks to the session file and the path.
 
 class SessionRecorderTest : public ::testing::Test {
  protected:
@@ -85,11 +86,7 @@ TEST_F(SessionRecorderTest, ThePathHasAPointEveryTenthOfASecondFromTheFirstTick)
   EXPECT_EQ(recorder.path()[2].x_m, 20.0);
 }
 
-}  // namespace
-
 // The run folder and the telemetry log.
-
-namespace {
 
 class RunFilesTest : public ::testing::Test {
  protected:

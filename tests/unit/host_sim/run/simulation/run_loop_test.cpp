@@ -1,5 +1,4 @@
-// Pacing by a clock that only moves when told to.
-
+// A run, tick by tick: pace, progress, telemetry, order.
 #include <gtest/gtest.h>
 #include <memory>
 #include <span>
@@ -16,6 +15,8 @@
 namespace screed {
 
 namespace {
+
+// Pacing by a clock that only moves when told to.
 
 using namespace std::chrono_literals;
 
@@ -61,11 +62,7 @@ TEST(Pacer, NeverSleepsWithoutRealtime) {
   EXPECT_DOUBLE_EQ(pacer.elapsed_s(), 0.25);
 }
 
-}  // namespace
-
 // How often a run tells how far it has come.
-
-namespace {
 
 LevelingPoint off_level_by(double metres) {
   LevelingPoint point;
@@ -95,11 +92,7 @@ TEST(Progress, TellsTenTimesASecondAndAtTheEnd) {
   for (const SimulationProgress& one : told) EXPECT_EQ(one.level_deviation_before_m, 0.02);
 }
 
-}  // namespace
-
 // What a robot sent, in frames and as a share of its line.
-
-namespace {
 
 RobotOutput sending(std::string_view bytes) {
   RobotOutput output{};
@@ -138,11 +131,7 @@ TEST(TelemetryMeter, BytesBehindTheValidOnesAreNotSent) {
   EXPECT_EQ(meter.frames(), 1U);
 }
 
-}  // namespace
-
 // The order of things in a tick.
-
-namespace {
 
 class Observer : public SimulationObserver {
  public:

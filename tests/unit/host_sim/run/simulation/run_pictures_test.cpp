@@ -1,5 +1,4 @@
-// What the picture of a leveling run says: figures, maps, curves.
-
+// Pictures of a run.
 #include <gtest/gtest.h>
 #include <cstddef>
 #include <vector>
@@ -10,6 +9,8 @@
 namespace screed {
 
 namespace {
+
+// What the picture of a leveling run says: figures, maps, curves.
 
 LevelingPoint point_at(double time_s, double relief_m, double roughness_m) {
   LevelingPoint point;
@@ -61,11 +62,7 @@ TEST_F(LevelingPicture, NeedsACurve) {
   EXPECT_THROW(svg(), InputError);
 }
 
-}  // namespace
-
 // How much of a driven path a run's pictures show.
-
-namespace {
 
 TEST(RunPictures, TheEndOfALongPathAndAllOfAShortOne) {
   std::vector<PathPoint> path;

@@ -1,5 +1,4 @@
-// Sections of single robots: read as the others are, in force for that robot alone.
-
+// What is put where: keys of single robots, traps.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <fstream>
@@ -17,6 +16,8 @@
 namespace screed {
 
 namespace {
+
+// Sections of single robots: read as the others are, in force for that robot alone.
 
 class RobotSections : public ::testing::Test {
  protected:
@@ -140,11 +141,7 @@ TEST_F(RobotSections, ComplaintsAreOfOneLine) {
             "--set: [robot_1] h = '1000' is not allowed; expected a number -360..360 (deg)");
 }
 
-}  // namespace
-
 // Traps that an experiment cuts into its terrain.
-
-namespace {
 
 /// Level ground with a trap; the start 0.2 m east of the middle, heading north.
 HeightField with_trap(const char* kind, double distance_m, double size) {

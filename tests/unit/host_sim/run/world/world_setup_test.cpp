@@ -1,5 +1,4 @@
-// Soil keys of an experiment file on their way into the world.
-
+// From an experiment to a world: soil, and threads of particles.
 #include <gtest/gtest.h>
 #include <string>
 
@@ -11,6 +10,8 @@
 namespace screed {
 
 namespace {
+
+// Soil keys of an experiment file on their way into the world.
 
 SoilParameters soil_of(const std::string& keys) {
   const TempFolder folder;
@@ -45,11 +46,7 @@ TEST(SoilOfAnExperiment, EveryNamedSoilIsAPreset) {
   }
 }
 
-}  // namespace
-
 // How many threads compute a bed of particles: what the environment says, no key of an experiment.
-
-namespace {
 
 int threads_for(const char* variable) {
   const EnvironmentVariable threads("SCREED_THREADS", variable);

@@ -1,6 +1,4 @@
-// Meshes: OBJ and both kinds of STL give the same unit cube; what is no mesh is refused in one
-// line. Files are found from the project's root, where the tests run.
-
+// Bodies of a robot model: meshes, and what a wheel rolls on.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <filesystem>
@@ -16,6 +14,9 @@
 namespace screed {
 
 namespace {
+
+// Meshes: OBJ and both kinds of STL give the same unit cube; what is no mesh is refused in one
+// line. Files are found from the project's root, where the tests run.
 
 const std::filesystem::path kData = "tests/data/urdf";
 
@@ -110,11 +111,7 @@ TEST(Mesh, TruncatedBinaryStlIsRefused) {
   EXPECT_NE(error_of(file).find("cannot be read"), std::string::npos) << error_of(file);
 }
 
-}  // namespace
-
 // What a wheel rolls on: cylinders, spheres and meshes about an axle.
-
-namespace {
 
 const Eigen::Vector3d kAxle = Eigen::Vector3d::UnitY();
 
