@@ -10,6 +10,7 @@
 #include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/rotation.h"
+#include "host_sim/physics/soil/soil_laws.h"
 #include "host_sim/soil_validation/check_range.h"
 
 namespace screed {
@@ -32,9 +33,7 @@ void check(const PlateTest& test) {
 double bekker_pressure(const PlateTest& test, double depth_m) {
   if (depth_m <= 0.0) return 0.0;
   const double b = test.round ? 0.5 * test.length_m : std::min(test.length_m, test.width_m);
-  const double bekker = test.soil.k_c / b + test.soil.k_phi;
-  return std::min(bekker * portable::pow(depth_m, test.soil.exponent),
-                  test.soil.elastic_pa_per_m * depth_m);
+  return std::min(bekker_pressure_pa(test.soil, b, depth_m), test.soil.elastic_pa_per_m * depth_m);
 }
 
 std::vector<PlatePoint> press_plate(const PlateTest& test) {

@@ -113,7 +113,7 @@ class Contact {
     for (int i = 0; i < (shape.shaped ? 1 : 30); ++i) {
       const double b =
           std::min(wheel_.width_m, r * (portable::sin(shape.entry) - portable::sin(shape.exit)));
-      shape.bekker = soil_.k_phi + soil_.k_c / std::max(b, 1e-3);
+      shape.bekker = bekker_modulus(soil_, std::max(b, 1e-3));
       if (shape.shaped) continue;
       const double rise = going_down(shape.bekker, sinkage) / soil_.elastic_pa_per_m;
       shape.exit = -angle(std::min(rise, sinkage));

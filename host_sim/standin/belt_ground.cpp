@@ -48,10 +48,10 @@ BeltGround::BeltGround(const HeightField& surface, const SoilParameters& soil,
       fit_(fit),
       flow_(surface, soil.repose_deg, Compaction{soil.compaction, soil.compaction_depth_m}),
       cell_area_(surface.spacing_m() * surface.spacing_m()),
-      bekker_(soil.k_c / tracks.width_m + soil.k_phi),
-      unloading_pa_per_m_(std::min(soil.elastic_pa_per_m,
-                                   fit.unloading * kPressure_pa /
-                                       portable::pow(kPressure_pa / bekker_, 1.0 / soil.exponent))),
+      bekker_(bekker_modulus(soil, tracks.width_m)),
+      unloading_pa_per_m_(std::min(
+          soil.elastic_pa_per_m,
+          fit.unloading * kPressure_pa / bekker_depth_m(soil, tracks.width_m, kPressure_pa))),
       tan_repose_(portable::tan(soil.repose_deg * std::numbers::pi / 180.0)),
       stances_(robots) {
   check_soil(soil);

@@ -56,7 +56,7 @@ SoilBed::Law SoilBed::law_below(const FootprintContact& contact, const RunFrame&
       memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, kMinPatch_m) : footprint.narrow();
   Law law;
   law.table = &table;
-  law.cell.bekker = soil_.k_phi + soil_.k_c / b;
+  law.cell.bekker = bekker_modulus(soil_, b);
   law.cell.elastic = elastic;
   law.cell.exponent = table.exponent();
   law.cell.power = table.lines();

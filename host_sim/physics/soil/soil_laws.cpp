@@ -1,4 +1,4 @@
-// Makes tables of powers, and shares them between worlds.
+// Bekker's law in closed form; tables of its powers, shared between worlds.
 #include "host_sim/physics/soil/soil_laws.h"
 
 #include <cmath>
@@ -20,6 +20,14 @@ constinit std::mutex known_in_use;
 constinit std::vector<KnownTables> known;
 
 }  // namespace
+
+double bekker_pressure_pa(const SoilParameters& soil, double breadth_m, double depth_m) {
+  return bekker_modulus(soil, breadth_m) * portable::pow(depth_m, soil.exponent);
+}
+
+double bekker_depth_m(const SoilParameters& soil, double breadth_m, double pressure_pa) {
+  return portable::pow(pressure_pa / bekker_modulus(soil, breadth_m), 1.0 / soil.exponent);
+}
 
 PowerTable::PowerTable(double exponent) : exponent_(exponent), lines_(kLines) {
   double low = 0.0;

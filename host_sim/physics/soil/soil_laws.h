@@ -16,7 +16,19 @@
 
 namespace screed {
 
-// Bekker's z^n as a table: the power is asked for a thousand times a step.
+// Bekker's pressure-sinkage law, p = (k_c / b + k_phi) z^n (M. G. Bekker, Introduction to
+// Terrain-Vehicle Systems, 1969).
+
+/// k_c / b + k_phi, Pa/m^n. `breadth_m`: b, the shorter side of what presses, or a disc's radius.
+inline double bekker_modulus(const SoilParameters& soil, double breadth_m) {
+  return soil.k_c / breadth_m + soil.k_phi;
+}
+/// At a depth z >= 0, Pa.
+double bekker_pressure_pa(const SoilParameters& soil, double breadth_m, double depth_m);
+/// The depth that bears this pressure, Pa >= 0.
+double bekker_depth_m(const SoilParameters& soil, double breadth_m, double pressure_pa);
+
+// Its z^n as a table: the power is asked for a thousand times a step.
 
 /// z^n for z >= 0 by linear interpolation between points whose distance grows with z: 32 in each
 /// octave from 2^-24 m (60 nm) to 1 m. Relative error below 5e-4 for n <= 2.5 (3e-5 for 0.5 and

@@ -10,6 +10,7 @@
 #include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/random.h"
+#include "host_sim/physics/soil/soil_laws.h"
 #include "host_sim/render/chart/line_chart.h"
 #include "host_sim/soil_validation/check_range.h"
 #include "host_sim/soil_validation/plate_press.h"
@@ -170,8 +171,8 @@ SoilReport run_match(MatchArguments a) {
   TaskBar bar(false);
   for (const ParticlePlatePoint& point : press_particles(a.test, bar.progress())) {
     const std::string where = text("plate, %g kPa", point.pressure_pa / kMilli);
-    const double bekker = soil.k_c / std::min(a.test.length_m, a.test.width_m) + soil.k_phi;
-    const double depth = portable::pow(point.pressure_pa / bekker, 1.0 / soil.exponent);
+    const double depth =
+        bekker_depth_m(soil, std::min(a.test.length_m, a.test.width_m), point.pressure_pa);
     lines.push_back({where, "depth_mm", point.depth_m() * kMilli, "%.2f",
                      std::max(depth, point.pressure_pa / soil.elastic_pa_per_m) * kMilli,
                      SoilLine::Error::kRelative});
