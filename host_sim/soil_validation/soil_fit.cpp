@@ -1,5 +1,5 @@
 // Levenberg and Marquardt's method (Eigen's, after MINPACK) over parameters that a sine keeps
-// inside their bounds.
+// inside their bounds, from several starts.
 #include "host_sim/soil_validation/soil_fit.h"
 
 #include <Eigen/Dense>
@@ -12,6 +12,7 @@
 
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/random.h"
 #include "host_sim/soil_validation/plate_press.h"
 
 namespace screed {
@@ -23,6 +24,14 @@ constexpr double kDifference =
     1e-5;  // of a free variable, for derivatives: above the limit's noise
 // Of the distance between the bounds: nearer than that, a parameter lies at its bound.
 constexpr double kAtBound = 1e-3;
+/// Where a fit begins: at the given place, and at the best of so many others.
+struct Starts {
+  int places;
+  size_t best;
+};
+constexpr Starts kPlateStarts = {300, 11};
+constexpr Starts kWheelStarts = {40, 3};  // a wheel takes a thousand times a plate's time
+constexpr double kMaxDrawn = 1.2;         // of a variable, for a start: nearer its bound it is flat
 
 /// A parameter between bounds as a variable without: value = low + (high - low) (1 + sin u) / 2, in
 /// the logarithm where the range spans decades.
@@ -92,10 +101,15 @@ class Residuals {
   int values() const { return count_; }
   int evaluations() const { return evaluations_; }
 
-  int operator()(const Eigen::VectorXd& variables, Eigen::VectorXd& residuals) const {
+  /// Gives the problem's free parameters these values.
+  void set(const Eigen::VectorXd& variables) const {
     for (size_t i = 0; i < free_.size(); ++i) {
       *free_[i].value = free_[i].bounded.value(variables[static_cast<Eigen::Index>(i)]);
     }
+  }
+
+  int operator()(const Eigen::VectorXd& variables, Eigen::VectorXd& residuals) const {
+    set(variables);
     if (progress_) progress_(++evaluations_);
     Eigen::Index next = 0;
     const auto add = [&](const std::optional<double>& measured, double predicted, double error) {
@@ -175,6 +189,104 @@ std::vector<Free> free_parameters(SoilFitProblem& problem) {
   return free;
 }
 
+struct Minimum {
+  Eigen::VectorXd variables;
+  double spread;
+};
+
+/// Root of the mean square of the residuals; infinite where they are no numbers.
+double spread_at(const Residuals& residuals, const Eigen::VectorXd& variables) {
+  Eigen::VectorXd left(residuals.values());
+  residuals(variables, left);
+  const double spread = std::sqrt(left.squaredNorm() / residuals.values());
+  return std::isnan(spread) ? std::numeric_limits<double>::infinity() : spread;
+}
+
+void sort_by_spread(std::vector<Minimum>& places) {
+  std::stable_sort(places.begin(), places.end(), [](const Minimum& one, const Minimum& other) {
+    return one.spread < other.spread;
+  });
+}
+
+bool as_good(const Minimum& one, const Minimum& best) {
+  return one.spread <= 1.001 * best.spread + 1e-6;
+}
+
+/// Where the fit ends from the given start, and from the best of many places drawn from the whole
+/// ranges: the answer, then all of them, best first. What is not determined stays as given where
+/// the given start is as good as any.
+std::vector<Minimum> minima_from_all_starts(Residuals& residuals, const std::vector<Free>& free,
+                                            const Starts& other) {
+  WorldRandom random(1, "starts of a soil fit");
+  std::vector<Minimum> starts;
+  const auto add = [&](const auto& variable_of) {
+    Eigen::VectorXd variables(residuals.inputs());
+    for (size_t i = 0; i < free.size(); ++i)
+      variables[static_cast<Eigen::Index>(i)] = variable_of(free[i]);
+    starts.push_back({variables, spread_at(residuals, variables)});
+  };
+  for (int i = 0; i < other.places; ++i) {
+    add([&](const Free& /*one*/) { return random.uniform(-kMaxDrawn, kMaxDrawn); });
+  }
+  sort_by_spread(starts);
+  starts.resize(other.best);
+  add([](const Free& one) { return one.bounded.variable(one.start); });
+  for (Minimum& minimum : starts) {
+    Eigen::LevenbergMarquardt<Residuals> method(residuals);
+    method.parameters.ftol = method.parameters.xtol = 1e-7;
+    method.parameters.maxfev = 300;
+    method.minimize(minimum.variables);
+    minimum.spread = spread_at(residuals, minimum.variables);
+  }
+  const Minimum from_given = starts.back();
+  sort_by_spread(starts);
+  starts.insert(starts.begin(), as_good(from_given, starts.front()) ? from_given : starts.front());
+  return starts;
+}
+
+/// Whether minima that are as good as the first one lie apart in this variable, by a twentieth of
+/// its range.
+bool differs(const std::vector<Minimum>& minima, Eigen::Index variable) {
+  const auto place = [&](const Minimum& of) { return portable::sin(of.variables[variable]); };
+  return std::any_of(minima.begin(), minima.end(), [&](const Minimum& other) {
+    return as_good(other, minima.front()) && std::abs(place(other) - place(minima.front())) > 0.1;
+  });
+}
+
+/// Whether the given value fits exactly as well. To the last digit it is no variable's.
+bool changes_nothing(const Residuals& residuals, Eigen::VectorXd variables, Eigen::Index index,
+                     const Free& one) {
+  const double spread = spread_at(residuals, variables);
+  variables[index] = one.bounded.variable(one.start);
+  return spread_at(residuals, variables) == spread;
+}
+
+/// An error of a variable that is as large as its whole range, -pi/2..pi/2 with its ends.
+constexpr double kWholeRange = 1.0;
+
+/// Standard errors of the variables. A direction in which nothing changes has an endless one.
+Eigen::VectorXd errors_of(const Eigen::MatrixXd& jacobian, double variance) {
+  constexpr double kNothing = 1e-6;  // of the change along the direction that changes most
+  const Eigen::VectorXd size = jacobian.colwise().norm().transpose();
+  Eigen::VectorXd scale = size;
+  for (double& one : scale) one = one > 0.0 ? 1.0 / one : 1.0;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian * scale.asDiagonal(), Eigen::ComputeThinV);
+  const double greatest = svd.singularValues()[0];
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(size.size());
+  for (Eigen::Index i = 0; i < size.size(); ++i) {
+    const double singular = svd.singularValues()[i];
+    const Eigen::VectorXd share = svd.matrixV().col(i).array().square();
+    if (singular > kNothing * greatest) {
+      squares += variance / (singular * singular) * share;
+    } else {
+      for (Eigen::Index k = 0; k < size.size(); ++k) {
+        if (share[k] > kNothing) squares[k] = std::numeric_limits<double>::infinity();
+      }
+    }
+  }
+  return squares.cwiseSqrt().cwiseProduct(scale);
+}
+
 }  // namespace
 
 WheelReaction predicted_wheel(const RollingWheel& wheel, const SoilParameters& soil,
@@ -194,37 +306,36 @@ SoilFit fit_soil(const SoilFitProblem& given, const std::function<void(int)>& pr
     throw InputError("fit: " + std::to_string(residuals.values()) + " measurements for " +
                      std::to_string(residuals.inputs()) + " parameters; more are needed");
   }
-  Eigen::VectorXd variables(residuals.inputs());
-  for (size_t i = 0; i < free.size(); ++i) {
-    variables[static_cast<Eigen::Index>(i)] = free[i].bounded.variable(*free[i].value);
-  }
-  Eigen::LevenbergMarquardt<Residuals> method(residuals);
-  method.parameters.ftol = method.parameters.xtol = 1e-7;
-  method.parameters.maxfev = 300;
-  method.minimize(variables);
+  const std::vector<Minimum> minima = minima_from_all_starts(
+      residuals, free, problem.measured.wheels.empty() ? kPlateStarts : kWheelStarts);
+  const Eigen::VectorXd& variables = minima.front().variables;
 
   SoilFit fit;
-  Eigen::VectorXd left(residuals.values());
+  fit.spread = minima.front().spread;
+  for (size_t i = 1; i < minima.size(); ++i) fit.spreads.push_back(minima[i].spread);
   Eigen::MatrixXd jacobian(residuals.values(), residuals.inputs());
   residuals.df(variables, jacobian);
-  residuals(variables, left);
+  std::vector<bool> idle;  // stay as given
+  for (size_t i = 0; i < free.size(); ++i)
+    idle.push_back(changes_nothing(residuals, variables, static_cast<Eigen::Index>(i), free[i]));
+  residuals.set(variables);
   fit.residuals = residuals.values();
-  const double freedom = residuals.values() - residuals.inputs();
-  const double variance = left.squaredNorm() / freedom;
-  fit.spread = std::sqrt(left.squaredNorm() / residuals.values());
   fit.evaluations = residuals.evaluations();
-  const Eigen::MatrixXd covariance =
-      variance *
-      (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+  const double freedom = residuals.values() - residuals.inputs();
+  const double variance = fit.spread * fit.spread * residuals.values() / freedom;
+  const Eigen::VectorXd errors = errors_of(jacobian, variance);
   for (size_t i = 0; i < free.size(); ++i) {
     const auto index = static_cast<Eigen::Index>(i);
+    const double variable = variables[index];
+    const double error = errors[index];
     const Free& one = free[i];
-    FittedParameter parameter{one.key, one.start, *one.value, 0.0,
-                              one.bounded.at_bound(variables[index])};
-    parameter.standard_error =
-        parameter.at_bound
-            ? std::numeric_limits<double>::quiet_NaN()
-            : std::sqrt(covariance(index, index)) * std::abs(one.bounded.slope(variables[index]));
+    if (idle[i]) *one.value = one.start;
+    const bool determined = error < kWholeRange && !differs(minima, index);
+    FittedParameter parameter{one.key,   one.start, *one.value, 0.0, one.bounded.at_bound(variable),
+                              determined};
+    parameter.standard_error = parameter.at_bound || !parameter.determined
+                                   ? std::numeric_limits<double>::quiet_NaN()
+                                   : error * std::abs(one.bounded.slope(variable));
     fit.parameters.push_back(parameter);
   }
   fit.soil = problem.soil;

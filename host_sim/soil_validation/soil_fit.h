@@ -33,6 +33,9 @@ struct FittedParameter {
   /// where the measurements do not determine it, or where it lies at a bound.
   double standard_error;
   bool at_bound;
+  /// False: the measurements are fitted as well with other values, alone or together with other
+  /// parameters, over most of its range.
+  bool determined;
 };
 
 struct SoilFit {
@@ -40,14 +43,18 @@ struct SoilFit {
   RimSurface rim;
   std::vector<FittedParameter> parameters;
   double spread = 0.0;  ///< root of the mean square of what is left, in the errors below; 1 is good
+  /// Of the fits from every start, each by itself, the best first.
+  std::vector<double> spreads;
   int residuals = 0;
   int evaluations = 0;
 };
 
 /// Errors that measurements are taken to have: of a force the greater part of 3 % of the load and
 /// 10 % of its value (their squares add), of a sinkage or a plate's pressure 10 %, of a torque 3 %
-/// of load times radius and 10 %. Throws InputError for an unknown key, one twice, and fewer
-/// measurements than parameters. `progress` is told how many evaluations were made.
+/// of load times radius and 10 %. The fit begins at the problem's soil and at the best of many
+/// places in the ranges of the free parameters (of 300 eleven, with wheels of 40 three); the best
+/// end is the answer. Throws InputError for an unknown key, one twice, and fewer measurements than
+/// parameters. `progress` is told how many evaluations were made.
 SoilFit fit_soil(const SoilFitProblem& problem, const std::function<void(int)>& progress = {});
 
 /// A wheel of the measurements on this soil, with this rim: the limit, and where the load sinks it

@@ -1,4 +1,5 @@
 // `screed soil fit`: the parameters of a soil from measurements on wheels or plates.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -69,11 +70,13 @@ void print_json(const SoilFit& fit, const MeanErrors& mean) {
   for (const FittedParameter& p : fit.parameters) {
     Json one = {{"key", p.key}, {"start", p.start}, {"value", p.value}};
     one["at_bound"] = p.at_bound;
+    one["determined"] = p.determined;
     if (std::isfinite(p.standard_error)) one["standard_error"] = p.standard_error;
     parameters.push_back(one);
   }
   Json out = {{"parameters", parameters},
               {"spread", fit.spread},
+              {"spreads", fit.spreads},
               {"measurements", fit.residuals},
               {"evaluations", fit.evaluations}};
   if (mean.wheels > 0) {
@@ -90,9 +93,19 @@ void print_fit(const SoilFit& fit, const SoilMeasurements& measured, const MeanE
     char error[40];
     std::snprintf(error, sizeof error, "%.3g", p.standard_error);
     std::printf("%-14s %12.5g %12.5g  %s\n", p.key.c_str(), p.start, p.value,
-                p.at_bound ? "lies at its bound" : error);
+                p.at_bound      ? "lies at its bound"
+                : !p.determined ? "not determined by these tests"
+                                : error);
   }
   std::printf("\nspread %.2f of the errors assumed, %d measurements\n", fit.spread, fit.residuals);
+  const auto same = std::count_if(fit.spreads.begin(), fit.spreads.end(), [&](double spread) {
+    return spread < fit.spread + 0.01 * (fit.spread + 0.01);
+  });
+  std::printf("%d of %zu starts end there", static_cast<int>(same), fit.spreads.size());
+  if (static_cast<size_t>(same) < fit.spreads.size())
+    std::printf(", the others at spreads of %.2f to %.2f", fit.spreads[static_cast<size_t>(same)],
+                fit.spreads.back());
+  std::printf("\n");
   if (mean.wheels == 0) return;
   std::printf("mean error: pull %.3f W, side force %.3f W, sinkage %.1f %%\n\n", mean.pull,
               mean.side, 100.0 * mean.sinkage);

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/soil_validation/plate_press.h"
 #include "host_sim/soil_validation/soil_fit.h"
 #include "host_sim/soil_validation/wheel_testbed.h"
 #include "paths.h"
@@ -126,30 +127,6 @@ TEST(SoilMeasuredTest, TheEngineIsCmusSmoothWheel) {
   }
 }
 
-// A fit finds the parameters that made the figures, and its error bars hold them.
-TEST(SoilFitTest, FindsWhatMadeTheFigures) {
-  SoilFitProblem problem;
-  problem.soil = soil_preset("cmu_2022");
-  problem.rim = kCmuRim;
-  problem.measured.wheels = one_trial_of_each_slip();
-  for (MeasuredWheel& row : problem.measured.wheels) {
-    const WheelReaction r = predicted_wheel(row.wheel, problem.soil, problem.rim);
-    row.drawbar_pull_n = r.drawbar_pull_n;
-    row.sinkage_m = r.sinkage_m;
-    row.side_force_n.reset();
-  }
-  problem.free = {"slip_sinkage", "K", "rim_friction"};
-  problem.soil.slip_sinkage = 0.35;
-  problem.soil.shear_modulus_m = 0.02;
-  problem.rim.friction = 0.5;
-  const SoilFit fit = fit_soil(problem);
-  EXPECT_NEAR(fit.soil.slip_sinkage, 0.232, 1e-3);
-  EXPECT_NEAR(fit.soil.shear_modulus_m, 0.0127, 1e-4);
-  EXPECT_NEAR(fit.rim.friction, 0.397, 1e-3);
-  EXPECT_LT(fit.spread, 0.01);
-  for (const FittedParameter& p : fit.parameters) EXPECT_LT(p.standard_error, 1e-3) << p.key;
-}
-
 TEST(SoilFitTest, FitsPlates) {
   SoilFitProblem problem;
   problem.soil = soil_preset("lete_sand");
@@ -165,6 +142,66 @@ TEST(SoilFitTest, FitsPlates) {
   EXPECT_NEAR(fit.soil.k_phi / 3e6, 1.0, 0.01);
   EXPECT_NEAR(fit.soil.k_c / 50e3, 1.0, 0.02);
   EXPECT_NEAR(fit.soil.exponent, 1.2, 0.002);
+}
+
+/// Bekker's law of this soil under plates, without errors.
+std::vector<MeasuredPlate> plates_on(const SoilParameters& soil, std::vector<double> widths_m) {
+  std::vector<MeasuredPlate> plates;
+  for (const double width_m : widths_m) {
+    for (const double depth_m : {0.002, 0.005, 0.01, 0.02, 0.04}) {
+      PlateTest test;
+      test.soil = soil;
+      test.length_m = 4.0 * width_m;
+      test.width_m = width_m;
+      plates.push_back(
+          {"plate", width_m, 4.0 * width_m, false, depth_m, bekker_pressure(test, depth_m)});
+    }
+  }
+  return plates;
+}
+
+TEST(SoilFitTest, FindsEveryNamedSoilFromEveryOther) {
+  for (const SoilPreset& wanted : soil_presets()) {
+    for (const SoilPreset& start : soil_presets()) {
+      SoilFitProblem problem;
+      problem.soil = start.soil;
+      problem.soil.elastic_pa_per_m = wanted.soil.elastic_pa_per_m;
+      problem.measured.plates = plates_on(wanted.soil, {0.05, 0.1, 0.2});
+      problem.free = {"k_phi", "k_c", "n"};
+      const SoilFit fit = fit_soil(problem);
+      const std::string where = wanted.soil.name + " from " + start.soil.name;
+      EXPECT_LT(fit.spread, 1e-3) << where;
+      EXPECT_NEAR(fit.soil.k_phi / wanted.soil.k_phi, 1.0, 0.01) << where;
+      EXPECT_NEAR(fit.soil.k_c / wanted.soil.k_phi, wanted.soil.k_c / wanted.soil.k_phi, 0.001)
+          << where;
+      EXPECT_NEAR(fit.soil.exponent, wanted.soil.exponent, 0.002) << where;
+      ASSERT_EQ(fit.spreads.size(), 12U);
+      EXPECT_LE(fit.spreads.front(), fit.spread);
+    }
+  }
+}
+
+TEST(SoilFitTest, SaysWhatTheTestsDoNotDetermine) {
+  const SoilParameters& sand = soil_preset("lete_sand");
+  const auto determined = [&](std::vector<double> widths_m, std::vector<std::string> free) {
+    SoilFitProblem problem;
+    problem.soil = sand;
+    problem.measured.plates = plates_on(sand, std::move(widths_m));
+    for (size_t i = 0; i < problem.measured.plates.size(); ++i)  // errors of 1 %
+      problem.measured.plates[i].pressure_pa *= i % 2 == 0 ? 1.01 : 0.99;
+    problem.free = std::move(free);
+    std::string keys;
+    for (const FittedParameter& p : fit_soil(problem).parameters) {
+      EXPECT_EQ(std::isnan(p.standard_error), !p.determined || p.at_bound) << p.key;
+      if (p.determined) keys += p.key + " ";
+    }
+    return keys;
+  };
+  EXPECT_EQ(determined({0.05, 0.2}, {"k_c", "k_phi", "n"}), "k_c k_phi n ");
+  // k_c / b + k_phi is one number where all plates have one width.
+  EXPECT_EQ(determined({0.05}, {"k_c", "k_phi", "n"}), "n ");
+  for (const char* key : {"K", "phi", "c", "repose", "slip_sinkage", "compaction"})
+    EXPECT_EQ(determined({0.05}, {key, "k_phi", "n"}), "k_phi n ") << key;
 }
 
 TEST(SoilFitTest, RefusesWhatMakesNoSense) {
