@@ -23,6 +23,7 @@ struct RosRobot {
        {"front_right_wheel_link", "front_right_wheel", "0.09 -0.0975 0"},
        {"rear_left_wheel_link", "rear_left_wheel", "-0.09 0.0975 0"},
        {"rear_right_wheel_link", "rear_right_wheel", "-0.09 -0.0975 0"}}};
+  std::array<std::string, 4> parents = {};  // of the wheels' joints; empty: the chassis
   std::string joint_rpy = "0 0 0";
   std::string axis = "0 1 0";
   std::string wheel_shapes =
@@ -66,7 +67,9 @@ inline std::string urdf_of(const RosRobot& robot) {
   text += "\">" + solid("1", "0.004");
   text += "<collision><geometry><box size=\"" + robot.chassis_size;
   text += "\"/></geometry></collision></link>\n";
-  for (const RosWheel& wheel : robot.wheels) {
+  for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
+    const RosWheel& wheel = robot.wheels[i];
+    const std::string& parent = robot.parents[i].empty() ? robot.chassis : robot.parents[i];
     text += "<link name=\"" + wheel.link;
     text += "\">" + solid("0.1", "5e-5");
     text += robot.wheel_shapes + "</link>\n";
@@ -74,7 +77,7 @@ inline std::string urdf_of(const RosRobot& robot) {
     inside += "\" rpy=\"" + robot.joint_rpy;
     inside += "\"/><axis xyz=\"" + robot.axis;
     inside += "\"/>" + robot.limit;
-    text += joint_text(wheel.joint, robot.wheel_joint, robot.chassis, wheel.link, inside);
+    text += joint_text(wheel.joint, robot.wheel_joint, parent, wheel.link, inside);
   }
   return text + robot.extra + "</robot>\n";
 }

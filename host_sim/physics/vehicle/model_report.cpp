@@ -2,6 +2,8 @@
 #include "host_sim/physics/vehicle/model_report.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -9,10 +11,16 @@
 #include <string_view>
 #include <variant>
 
+#include "host_sim/core/errors.h"
+#include "host_sim/physics/vehicle/vehicle_parts.h"
+
 namespace screed {
 namespace {
 
-constexpr double kSame_m = 1e-3;           // lengths that should be equal
+constexpr double kSame_m = 1e-3;  // lengths that should be equal
+// Of the robot's mass: a body on a hinge that beds of particles carry (measured with a robot of 1.4
+// kg on particles of 6 to 30 mm).
+constexpr double kLightest = 0.005;
 constexpr double kMaxGyrationShare = 2.0;  // of the largest extent; a solid body has at most 0.5
 
 [[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...) {
@@ -67,6 +75,7 @@ class Checks {
 
   void run() {
     wheels();
+    names();
     sides();
     hull();
     balance();
@@ -96,6 +105,29 @@ class Checks {
         if (2.0 * wheel.radius_m < wheel.width_m) {
           warn(text("wheel '%s' is wider (%.1f mm) than its diameter (%.1f mm)", name,
                     1e3 * wheel.width_m, 2e3 * wheel.radius_m));
+        }
+      }
+    }
+  }
+
+  /// Names that say another corner than where the wheel is.
+  void names() {
+    constexpr struct {
+      const char* word;
+      size_t end;  // 0 side, 1 end
+      size_t is;
+    } kWords[] = {{"left", 0, 0}, {"right", 0, 1}, {"front", 1, 0}, {"rear", 1, 1}, {"back", 1, 1}};
+    constexpr const char* kPlaces[2][2] = {{"left", "right"}, {"front", "rear"}};
+    for (size_t side = 0; side < 2; ++side) {
+      for (size_t end = 0; end < 2; ++end) {
+        std::string name = name_of(assembly_, assembly_.wheels[side][end]);
+        const std::string given = name;
+        for (char& letter : name) letter = static_cast<char>(std::tolower(letter));
+        const std::array<size_t, 2> place = {side, end};
+        for (const auto& word : kWords) {
+          if (name.find(word.word) == std::string::npos || word.is == place[word.end]) continue;
+          warn(text("wheel '%s' is the %s %s one by its place, not by its name", given.c_str(),
+                    kPlaces[1][end], kPlaces[0][side]));
         }
       }
     }
@@ -183,6 +215,14 @@ class Checks {
       if (joint.kind == AssemblyJoint::Kind::Revolute) {
         warn(text("joint '%s' swings freely%s: nothing holds or drives it; type=\"fixed\" does",
                   joint.name.c_str(), joint.limited ? " between its stops" : ""));
+        const double mass_kg =
+            composed_inertia(assembly_, rigid_group(assembly_, joint.child)).mass;
+        if (mass_kg < kLightest * report_.mass_kg) {
+          warn(
+              text("what hangs on joint '%s' has %.2g %% of the robot's mass: particles throw up "
+                   "what has less than %.1g %%; fix it, or make it heavier",
+                   joint.name.c_str(), 100.0 * mass_kg / report_.mass_kg, 100.0 * kLightest));
+        }
       }
     }
   }
@@ -205,7 +245,8 @@ double lowest(const Assembly& assembly) {
 
 }  // namespace
 
-ModelReport report_model(const Assembly& assembly) {
+ModelReport report_model(const Assembly& assembly, const VehicleOptions& options,
+                         bool either_drive) {
   ModelReport report;
   std::vector<int> all;
   all.reserve(assembly.bodies.size());
@@ -226,6 +267,16 @@ ModelReport report_model(const Assembly& assembly) {
   }
   report.clearance_m = lowest(assembly) - ground;
   Checks(assembly, report).run();
+  try {
+    const VehicleParts parts(assembly, options);
+  } catch (const InputError& error) {
+    if (!either_drive) throw;
+    VehicleOptions other = options;
+    other.tracks = !other.tracks;
+    const VehicleParts parts(assembly, other);
+    report.warnings.push_back(text("with [vehicle] tracks = %s it is refused: %s",
+                                   options.tracks ? "true" : "false", error.what()));
+  }
   return report;
 }
 

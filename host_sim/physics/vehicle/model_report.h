@@ -1,5 +1,5 @@
-// What a robot model amounts to as a vehicle, and what about it is doubtful. Knows assemblies, no
-// files and no physics engine.
+// What a robot model amounts to as a vehicle, what about it is doubtful, and whether a world would
+// refuse it. Knows no files and no physics engine.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/physics/vehicle/vehicle_options.h"
 
 namespace screed {
 
@@ -22,7 +23,10 @@ struct ModelReport {
   std::vector<std::string> warnings;  ///< one line each
 };
 
-/// The model as drawn, every joint at zero.
-ModelReport report_model(const Assembly& assembly);
+/// The model as drawn, every joint at zero. Throws InputError as VehicleParts does where a world
+/// with these options would; with `either_drive` only when the other choice of tracks or wheels is
+/// refused as well, else it is a warning.
+ModelReport report_model(const Assembly& assembly, const VehicleOptions& options = {},
+                         bool either_drive = true);
 
 }  // namespace screed

@@ -91,21 +91,12 @@ std::optional<DriveCommand> drive_of(const Experiment& experiment) {
 WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup) {
   WorldOptions options;
   options.progress = setup.progress;
-  const BoardMotor motor = board_motor(setup.board);
-  options.vehicle.motor = motor.motor;
-  options.encoder_counts_per_turn = motor.counts_per_turn;
+  options.vehicle = vehicle_options(experiment, setup.board);
+  options.encoder_counts_per_turn = board_motor(setup.board).counts_per_turn;
   options.battery = make_battery(experiment, setup.board);
   options.seed = experiment.experiment.seed;
   options.physics_step_s = experiment.physics.step_s;
   options.robot_friction = experiment.robots.friction;
-  options.vehicle.tracks = experiment.vehicle.tracks;
-  options.vehicle.track_model =
-      experiment.vehicle.track_model == "chain" ? TrackModel::kChain : TrackModel::kBelt;
-  options.vehicle.chain.links = experiment.vehicle.track_links;
-  options.vehicle.chain.tension_n = experiment.vehicle.track_tension_n;
-  options.vehicle.track_friction = experiment.vehicle.track_friction;
-  options.vehicle.chassis_friction = experiment.vehicle.chassis_friction;
-  options.vehicle.wall_friction = experiment.map.wall_friction;
   options.imu = experiment.sensors.imu_errors();
   options.calibration_motion = experiment.sensors.calibration_motion;
   options.radio.delay_s = experiment.radio.delay_s;
@@ -189,6 +180,20 @@ HeightField make_terrain(const Experiment& experiment) {
   set_trap(experiment, field);
   if (experiment.map.edge() == BedEdge::kWalled) field.add_walls();
   return field;
+}
+
+VehicleOptions vehicle_options(const Experiment& experiment, const std::string& board) {
+  const VehicleSection& section = experiment.vehicle;
+  VehicleOptions options;
+  options.motor = board_motor(board).motor;
+  options.tracks = section.tracks;
+  options.track_model = section.track_model == "chain" ? TrackModel::kChain : TrackModel::kBelt;
+  options.chain.links = section.track_links;
+  options.chain.tension_n = section.track_tension_n;
+  options.track_friction = section.track_friction;
+  options.chassis_friction = section.chassis_friction;
+  options.wall_friction = experiment.map.wall_friction;
+  return options;
 }
 
 std::vector<RobotOptions> robot_options(const Experiment& experiment, const std::string& board) {

@@ -12,6 +12,7 @@
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/physics/vehicle/vehicle_options.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/world/world.h"
@@ -44,6 +45,8 @@ SoilParameters make_soil(const Experiment& experiment);
 ParticleOptions make_particles(const Experiment& experiment);
 /// The terrain an experiment asks for; the surface that particles are laid up to.
 HeightField make_terrain(const Experiment& experiment);
+/// How the robot is driven. Throws InputError for a board of unknown name.
+VehicleOptions vehicle_options(const Experiment& experiment, const std::string& board);
 /// What is each robot's own in an experiment, on a board of this name. Throws InputError for an
 /// unknown one.
 std::vector<RobotOptions> robot_options(const Experiment& experiment, const std::string& board);

@@ -16,6 +16,7 @@
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/experiment/robot_model.h"
+#include "host_sim/run/world/world_setup.h"
 #include "tools/screed/cli/command.h"
 
 namespace screed {
@@ -95,7 +96,9 @@ CheckedModel read_model(const ModelArguments& arguments) {
     vehicle.wheel_links = arguments.wheel_links;
   }
   model.robot = make_robot_model(model.experiment, arguments.board, model.file);
-  model.report = report_model(model.robot);
+  const bool drive_is_given = given.extension() == ".ini";
+  model.report = report_model(model.robot, vehicle_options(model.experiment, arguments.board),
+                              !drive_is_given);
   return model;
 }
 
@@ -218,7 +221,11 @@ void print_model(const Json& json) {
   print("\n");
   const Json& warnings = json["warnings"];
   for (const Json& warning : warnings) print("warning: {}\n", warning);
-  print(warnings.empty() ? "no warnings\n" : "{} warnings\n", warnings.size());
+  if (warnings.empty()) {
+    print("no warnings\n");
+  } else {
+    print(warnings.size() == 1 ? "{} warning\n" : "{} warnings\n", warnings.size());
+  }
 }
 
 int check_model(const ModelArguments& arguments) {

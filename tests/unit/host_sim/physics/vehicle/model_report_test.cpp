@@ -104,6 +104,20 @@ INSTANTIATE_TEST_SUITE_P(
                 r.wheels[2].place = "-0.09 0.1175 0";
               },
               "the origin of the chassis is 10.0 mm beside the middle of the wheels\n"},
+        Doubt{
+            "Name", [](RosRobot& r) { std::swap(r.wheels[0].place, r.wheels[3].place); },
+            "wheel 'front_left_wheel_link' is the rear right one by its place, not by its name\n"},
+        Doubt{"TwoCarriers",
+              [](RosRobot& r) {
+                r.extra = "<link name=\"bogie\">" + solid("0.1", "1e-4");
+                r.extra += "</link>" + joint_text("swing", "continuous", "base_link", "bogie",
+                                                  "<origin xyz=\"-0.09 0 0\"/>");
+                r.parents = {"base_link", "base_link", "bogie", "bogie"};
+                r.wheels[2].place = "0 0.0975 0";
+                r.wheels[3].place = "0 -0.0975 0";
+              },
+              "with [vehicle] tracks = true it is refused: robot model: a track needs "
+              "'front_left_wheel_link' and 'rear_left_wheel_link' on the same rigid body"},
         Doubt{"Hull", [](RosRobot& r) { r.chassis_size = "0.2 0.14 0.08"; },
               "a collision shape reaches 10.0 mm below the wheels"},
         Doubt{"Balance",
@@ -122,6 +136,14 @@ INSTANTIATE_TEST_SUITE_P(
               },
               "link 'box' has the inertia of a body far larger than it is: radius of gyration "
               "3162 mm, extent 100 mm\n"},
+        Doubt{"LightLink",
+              [](RosRobot& r) {
+                r.extra = "<link name=\"whisker\">" + solid("0.002", "1e-7");
+                r.extra +=
+                    "</link>" + joint_text("whisker_joint", "continuous", "base_link", "whisker");
+              },
+              "what hangs on joint 'whisker_joint' has 0.14 % of the robot's mass: particles throw "
+              "up what has less than 0.5 %; fix it, or make it heavier"},
         Doubt{"FreeJoint",
               [](RosRobot& r) {
                 r.extra = "<link name=\"arm\">" + solid("0.1", "1e-4");
