@@ -240,6 +240,8 @@ int run_program(Command& program, int argc, char** argv, const std::function<int
     return fail(kWrongInput, error.what() + (" (see " + error.command()) + " --help)");
   } catch (const InputError& error) {
     return fail(kWrongInput, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kFailed, "out of memory: smaller beds, wider cells and larger particles need less");
   } catch (const std::exception& error) {
     return fail(kFailed, error.what());
   }

@@ -1,5 +1,6 @@
 // `screed`, the one host program.
 #include <iostream>
+#include <new>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/lanes/instruction_set.h"
@@ -11,11 +12,14 @@
 int main(int argc, char** argv) {
   try {
     screed::instruction_sets();  // the defaults of options ask for them
+    screed::CommandLine line(SCREED_VERSION, SCREED_VERSION_TEXT);
+    return screed::run_program(line.app, argc, argv,
+                               [&] { return screed::run_interruptible(line.program.action); });
   } catch (const screed::InputError& error) {
     std::cerr << "screed: " << error.what() << "\n";
     return 2;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "screed: out of memory\n";
+    return 1;
   }
-  screed::CommandLine line(SCREED_VERSION, SCREED_VERSION_TEXT);
-  return screed::run_program(line.app, argc, argv,
-                             [&] { return screed::run_interruptible(line.program.action); });
 }

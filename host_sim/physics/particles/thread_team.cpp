@@ -2,6 +2,9 @@
 // microseconds before they sleep: a step of a bed has two pieces of work, of a millisecond each.
 #include "host_sim/physics/particles/thread_team.h"
 
+#include <system_error>
+#include <utility>
+
 namespace screed {
 namespace {
 
@@ -19,8 +22,11 @@ void relax() {
 }  // namespace
 
 ThreadTeam::ThreadTeam(int threads) {
-  for (int i = 1; i < threads; ++i) {
-    others_.emplace_back([this, i] { serve(static_cast<size_t>(i)); });
+  others_.reserve(static_cast<size_t>(threads) - 1);
+  try {
+    for (int i = 1; i < threads; ++i)
+      others_.emplace_back([this, i] { serve(static_cast<size_t>(i)); });
+  } catch (const std::system_error&) {  // the system has no more: those that there are do the work
   }
 }
 
@@ -49,6 +55,9 @@ void ThreadTeam::share(size_t count, Call call, const void* work) {
       std::this_thread::yield();
     }
   }
+  if (!failed_.test()) return;
+  failed_.clear();
+  std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void ThreadTeam::serve(size_t member) {
@@ -65,7 +74,12 @@ void ThreadTeam::serve(size_t member) {
 }
 
 void ThreadTeam::take_parts(size_t member) {
-  for (size_t i = next_++; i < count_; i = next_++) call_(work_, i, member);
+  try {
+    for (size_t i = next_++; i < count_; i = next_++) call_(work_, i, member);
+  } catch (...) {
+    next_ = count_;
+    if (!failed_.test_and_set()) failure_ = std::current_exception();
+  }
 }
 
 }  // namespace screed

@@ -4,12 +4,14 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <thread>
 #include <vector>
 
 namespace screed {
 
-/// The caller's thread and others that wait for it. Work must not throw.
+/// The caller's thread and others that wait for it: fewer than asked for where no more can be
+/// started. What work throws first is thrown on by run().
 class ThreadTeam {
  public:
   /// `threads`: 1 or more, the caller's included.
@@ -21,8 +23,8 @@ class ThreadTeam {
   int threads() const { return static_cast<int>(others_.size()) + 1; }
 
   /// Calls work(i, member) for every i below count, each once, in any thread and order; `member`,
-  /// below threads(), is the number of the thread. Returns when all have returned. Allocates
-  /// nothing.
+  /// below threads(), is the number of the thread. Returns when all have returned; after one that
+  /// throws, the rest may be left out. Allocates nothing.
   template <class Work>
   void run(size_t count, const Work& work) {
     if (others_.empty() || count < 2) {
@@ -52,6 +54,8 @@ class ThreadTeam {
   std::atomic<uint32_t> opened_{0};  // how often: what waiting threads wait for
   std::atomic<uint32_t> inside_{0};
   std::atomic<bool> over_{false};
+  std::atomic_flag failed_;
+  std::exception_ptr failure_;  // of who has set the flag
   std::vector<std::thread> others_;
 };
 

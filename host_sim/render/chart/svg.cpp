@@ -8,9 +8,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <exception>
 #include <memory>
 #include <span>
 #include <string_view>
+#include <thread>
+#include <vector>
 
 #include "host_sim/core/base64.h"
 #include "host_sim/core/errors.h"
@@ -213,9 +216,23 @@ struct Release {
   throw RunError(what);
 }
 
+/// Pango's threads and GLib's memory end the program where there is no room for them.
+void check_room(const std::filesystem::path& path) {
+  constexpr std::size_t kRoom = 192U << 20U;  // of addresses: an arena for each thread
+  try {
+    std::vector<char> room;
+    room.reserve(kRoom);
+    *static_cast<volatile char*>(room.data()) = 0;  // or compilers leave it out
+    std::thread([] {}).join();
+  } catch (const std::exception&) {
+    throw RunError(path.string() + ": the picture cannot be drawn: out of memory");
+  }
+}
+
 }  // namespace
 
 void write_svg_as_png(const std::filesystem::path& path, const std::string& svg, double scale) {
+  check_room(path);
   GError* error = nullptr;
   const std::unique_ptr<RsvgHandle, Release> picture(
       rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(svg.data()), svg.size(), &error));

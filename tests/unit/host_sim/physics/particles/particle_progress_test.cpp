@@ -57,6 +57,20 @@ TEST(ParticleKernel, SteppingWithAllAwakeAllocatesNothing) {
   EXPECT_EQ(bed.work().elements, bed.size());
 }
 
+TEST(ThreadTeam, ThrowsOnWhatWorkThrowsAndGoesOn) {
+  for (const int threads : {1, 2, 4}) {
+    ThreadTeam team(threads);
+    EXPECT_THROW(team.run(100,
+                          [](size_t i, size_t /*member*/) {
+                            if (i % 7 == 3) throw std::bad_alloc();
+                          }),
+                 std::bad_alloc);
+    std::atomic<int> done = 0;
+    team.run(100, [&](size_t /*i*/, size_t /*member*/) { ++done; });
+    EXPECT_EQ(done, 100);
+  }
+}
+
 TEST(ThreadTeam, DoesEachPartOnce) {
   for (const int threads : {1, 2, 4}) {
     ThreadTeam team(threads);
