@@ -58,6 +58,7 @@ include tests/fuzz/fuzz.mk
 include tests/can/can.mk
 include tests/slurm/slurm.mk
 include tests/python/python.mk
+include tests/limits/limits.mk
 include tests/portable/portable.mk
 include tools/camera/camera.mk
 include tests/processors/processors.mk

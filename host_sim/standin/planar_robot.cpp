@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "hal/sample.h"
 #include "host_sim/core/constants.h"
+#include "host_sim/core/errors.h"
 #include "host_sim/core/rotation.h"
 
 namespace screed {
@@ -56,7 +58,25 @@ void PlanarRobot::begin_at(const DrivingState& state, const BodyPose& body) {
   count_wraps();
 }
 
+// Nothing here falls or bounces: a body that is far from the ground, or fast, is one that the
+// ground's closed form or the network has lost.
+void PlanarRobot::check(const BodyPose& body) const {
+  constexpr double kFastest_m_per_s = 10.0;
+  const double reach = 3.0 * (kind_.half_tread_m + kind_.wheel_radius_m);
+  const Eigen::Vector3d& at = body.place;
+  const double above = at.z() - ground_.at(at.x(), at.y()).height;
+  const double speed = (at - now_.place).norm() / kTick_s;
+  if (std::abs(above) < reach && speed < kFastest_m_per_s) return;
+  char line[200];
+  std::snprintf(line, sizeof line,
+                "the surrogate world diverged: the robot's origin %.3g m above the ground, at "
+                "%.3g m/s; the ground may be too soft or too steep for a world without dynamics",
+                above, speed);
+  throw RunError(line);
+}
+
 void PlanarRobot::move_body(const BodyPose& body) {
+  check(body);
   const BodyPose before = now_;
   now_ = body;
   const Eigen::Matrix3d& from = before.rotation;

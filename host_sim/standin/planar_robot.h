@@ -58,7 +58,7 @@ class PlanarRobot : public RobotView, public VehicleState {
   void step_shafts(const DutyRatio& duty, const std::array<double, 2>& torque_nm, double dt);
   /// Goes on from there, with the body at `body`.
   void begin_at(const DrivingState& state, const BodyPose& body);
-  /// The frame's end: the body has come to `body`.
+  /// The frame's end: the body has come to `body`. Throws RunError where it cannot be.
   void move_body(const BodyPose& body);
   void stand_still();
 
@@ -70,6 +70,7 @@ class PlanarRobot : public RobotView, public VehicleState {
   bool on_side() const { return on_side_; }
 
  private:
+  void check(const BodyPose& body) const;
   void count_wraps();
 
   const HeightField& ground_;

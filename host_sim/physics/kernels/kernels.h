@@ -105,12 +105,13 @@ struct alignas(64) CellBlock {
 };
 
 /// The force of a cell over the body's downward displacement there: max(0, min(elastic, virgin)),
-/// each a straight line.
+/// each a straight line, and of what goes down its damper.
 struct alignas(64) SpringBlock {
   double elastic[kLanes];        ///< N, now
   double elastic_slope[kLanes];  ///< N/m
   double virgin[kLanes];         ///< N, now
   double virgin_slope[kLanes];   ///< N/m
+  double damper[kLanes];         ///< N/m over this step
   double x[kLanes];              ///< position from the body's centre of mass, m
   double y[kLanes];
   double sinking[kLanes];  ///< the answer: downward displacement in this step, m
@@ -147,6 +148,7 @@ struct CellLaw {
   double half_square;      ///< half the side of the square that a sample point stands for
   double cell_area;
   double edge;     ///< of a cell
+  double damper;   ///< R over the step, Pa/m
   bool radial;     ///< the normal stress acts along the surface's normal
   Triple centre;   ///< of the footprint
   Triple axis_x;   ///< its contour's direction
@@ -254,6 +256,7 @@ struct ReactionLaw {
   double cell_area;
   double height_unit;
   double damping;
+  double per_step;  ///< 1 / dt; 0: the motion is imposed, and no spring's sinking known
   double cohesion;
   double tan_friction;
   double adhesion;
@@ -337,7 +340,8 @@ struct Kernels {
                        const CellLaw& law, SpringBlock* springs, CellSums& sums);
   /// StressShape's lift at one sine of an angle, m.
   double (*stress_lift)(const StressShape& shape, double sine);
-  void (*spring_sums)(const SpringBlock* springs, size_t blocks, const Tilt& moved,
+  /// `damped`: springs have dampers.
+  void (*spring_sums)(const SpringBlock* springs, size_t blocks, const Tilt& moved, bool damped,
                       SpringSums& sums);
   void (*spring_sinking)(SpringBlock* springs, size_t blocks, const Tilt& moved);
   void (*advance_shear)(const ShearStep& step, const ShearPlaces& places);

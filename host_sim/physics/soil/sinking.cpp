@@ -82,6 +82,7 @@ void extend_path(const Footprint& footprint, const Eigen::Vector3d& displacement
 //   q        = (up, roll, pitch), displacement in this step, m, rad, about the world's x and y
 //   d_i      = -(q0 + q1 y_i - q2 x_i)                downward displacement at spring i, m
 //   f_i      = max(0, min(elastic + elastic_slope d_i, virgin + virgin_slope d_i))
+//              + damper max(0, d_i)
 //   external = gravity at first contact, then (rate - memory.rate) / dt - memory.soil_acceleration
 //   q_free   = dt rate + dt^2 external                where the body goes without soil
 // Wanted: M / dt^2 (q - q_free) = sum of f_i (1, y_i, -x_i), the minimum of a convex energy. Yaw is
@@ -107,10 +108,10 @@ struct Support {
   Eigen::Matrix3d stiffness;
 };
 
-Support support(std::span<const SpringBlock> springs, const Eigen::Vector3d& q,
+Support support(std::span<const SpringBlock> springs, const Eigen::Vector3d& q, bool damped,
                 const Kernels& kernels) {
   SpringSums s;
-  kernels.spring_sums(springs.data(), springs.size(), {q.x(), q.y(), q.z()}, s);
+  kernels.spring_sums(springs.data(), springs.size(), {q.x(), q.y(), q.z()}, damped, s);
   Support sum;
   sum.force << s.f, s.fy, -s.fx;
   sum.stiffness << s.k, s.ky, -s.kx, s.ky, s.kyy, -s.kxy, -s.kx, -s.kxy, s.kxx;
@@ -119,7 +120,7 @@ Support support(std::span<const SpringBlock> springs, const Eigen::Vector3d& q,
 
 }  // namespace
 
-int solve_sinking(const PressingBody& body, double dt, std::span<SpringBlock> springs,
+int solve_sinking(const PressingBody& body, double dt, std::span<SpringBlock> springs, bool damped,
                   BodyMemory& memory, const Kernels& kernels) {
   if (!std::isfinite(body.mass_kg)) return 0;
   const bool tilts = !body.inverse_inertia.isZero(0.0);
@@ -144,7 +145,7 @@ int solve_sinking(const PressingBody& body, double dt, std::span<SpringBlock> sp
   const Eigen::Vector3d q_free = rate * dt + external * (dt * dt);
 
   Eigen::Vector3d q = Eigen::Vector3d::Zero();
-  Support at = support(springs, q, kernels);
+  Support at = support(springs, q, damped, kernels);
   Eigen::Vector3d gradient = mass_per_dt2 * (q - q_free) - at.force;
   int evaluations = 0;
   while (evaluations < kMaxEvaluations) {
@@ -159,7 +160,7 @@ int solve_sinking(const PressingBody& body, double dt, std::span<SpringBlock> sp
     for (;;) {
       ++evaluations;
       next = q + step * direction;
-      at = support(springs, next, kernels);
+      at = support(springs, next, damped, kernels);
       gradient = mass_per_dt2 * (next - q_free) - at.force;
       const double slope = gradient.dot(direction);
       if (slope <= -0.3 * initial_slope || evaluations >= kMaxEvaluations) break;

@@ -47,7 +47,8 @@ void extend_path(const Footprint& footprint, const Eigen::Vector3d& displacement
 /// late. Fills in each spring's `sinking`; leaves 0 where the motion is imposed. Remembers for the
 /// next step. Returns how often the springs' forces were evaluated beyond the first time: one a
 /// Newton step and one a shortening of it; 0 where the motion is imposed.
-int solve_sinking(const PressingBody& body, double dt, std::span<SpringBlock> springs,
+/// `damped`: springs have dampers.
+int solve_sinking(const PressingBody& body, double dt, std::span<SpringBlock> springs, bool damped,
                   BodyMemory& memory, const Kernels& kernels = best_kernels());
 
 }  // namespace screed

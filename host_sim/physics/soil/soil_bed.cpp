@@ -97,7 +97,7 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
       const double area = std::max(kept.patch_area_m2, cell_area_);
       elastic = std::min(elastic, kStableStiffness * body.mass_kg / (dt * dt * area));
     }
-    ranges_.push_back(find_cells(contact, elastic));
+    ranges_.push_back(find_cells(contact, elastic, dt));
     const Range& range = ranges_.back();
     if (range.touching) {
       touching = true;
@@ -110,7 +110,8 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
     memory = {};
     return;
   }
-  solve_sinking(body, dt, {springs_.data(), blocks_}, memory, kernels_);
+  solve_sinking(body, dt, {springs_.data(), blocks_}, soil_.damping_pa_s_per_m > 0.0, memory,
+                kernels_);
   for (size_t i = 0; i < contacts.size(); ++i) react(ranges_[i], body, contacts[i], dt);
 }
 

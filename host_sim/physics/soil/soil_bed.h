@@ -124,8 +124,9 @@ class SoilBed final : public Terrain {
     bool touching = false;
   };
 
-  Range find_cells(const FootprintContact& contact, double elastic);
-  Law law_below(const FootprintContact& contact, const RunFrame& frame, double elastic) const;
+  Range find_cells(const FootprintContact& contact, double elastic, double dt);
+  Law law_below(const FootprintContact& contact, const RunFrame& frame, double elastic,
+                double dt) const;
   void find_candidates(const Footprint& footprint, const PathHistory& path, double rebound_m);
   bool find_rows(const Footprint& footprint, double highest);
   void drop_cells_below(const Footprint& footprint, double rebound_m);
@@ -140,7 +141,7 @@ class SoilBed final : public Terrain {
   void advance_shear(const Range& range, const PressingBody& body, FootprintContact& contact,
                      double dt) const;
   ReactionLaw reaction_law(const Range& range, const PressingBody& body,
-                           const FootprintContact& contact) const;
+                           const FootprintContact& contact, double dt) const;
   void react(const Range& range, const PressingBody& body, FootprintContact& contact, double dt);
   void settle(const Range& range, bool slips);
   void dig_below(const ReactionSums& sums, const ReactionLaw& law, const Eigen::Isometry3d& pose,

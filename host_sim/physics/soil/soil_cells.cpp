@@ -44,7 +44,7 @@ constexpr double kFlatWithin = 0.75;
 }  // namespace
 
 SoilBed::Law SoilBed::law_below(const FootprintContact& contact, const RunFrame& frame,
-                                double elastic) const {
+                                double elastic, double dt) const {
   const Footprint& footprint = *contact.footprint;
   const ContactMemory& memory = *contact.memory;
   // Slip-sinkage raises the exponent.
@@ -64,6 +64,7 @@ SoilBed::Law SoilBed::law_below(const FootprintContact& contact, const RunFrame&
   law.cell.half_square = 0.5 * surface().spacing_m() / samples_per_side_;
   law.cell.cell_area = cell_area_;
   law.cell.edge = surface().spacing_m();
+  law.cell.damper = soil_.damping_pa_s_per_m / dt;
   law.cell.radial = options_.normal_stress == NormalStress::kRadial;
   law.cell.centre = triple(footprint.pose().translation());
   law.cell.axis_x = triple(frame.axes.col(0));
@@ -72,14 +73,14 @@ SoilBed::Law SoilBed::law_below(const FootprintContact& contact, const RunFrame&
 }
 
 /// The cells that a footprint touches, sampled.
-SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elastic) {
+SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elastic, double dt) {
   const Footprint& footprint = *contact.footprint;
   ContactMemory& memory = *contact.memory;
   const double spacing = surface().spacing_m();
   Range range;
   range.begin = range.end = blocks_;
   range.frame = footprint.run_frame();
-  range.law = law_below(contact, range.frame, elastic);
+  range.law = law_below(contact, range.frame, elastic, dt);
   CellLaw& law = range.law.cell;
 
   // Unloaded soil rises by its elastic part: where the body is higher above the ground than that

@@ -26,12 +26,12 @@ namespace screed {
     "Bekker's cohesive modulus") \
   X(exponent,           "n",             "--exponent",      "",          0.1,  2.5,  1.1, \
     "Bekker's exponent of sinkage") \
-  X(cohesion_pa,        "c",             "--cohesion",      "Pa",        0.0,  1e7,  0.0,   "cohesion") \
+  X(cohesion_pa,        "c",             "--cohesion",      "Pa",        0.0,  1e6,  0.0,   "cohesion") \
   X(friction_deg,       "phi",           "--friction",      "deg",       0.0,  60.0, 30.0, \
     "angle of internal friction") \
   X(shear_modulus_m,    "K",             "--shear-modulus", "m",         1e-5, 1.0,  0.01, \
     "Janosi-Hanamoto shear modulus") \
-  X(elastic_pa_per_m,   "E",             "--elastic",       "Pa/m",      1e4,  1e12, 2e8,   "stiffness of unloading") \
+  X(elastic_pa_per_m,   "E",             "--elastic",       "Pa/m",      1e5,  1e12, 2e8,   "stiffness of unloading") \
   X(damping_pa_s_per_m, "R",             "--damping",       "Pa s/m",    0.0,  1e9,  0.0,   "damping of sinking") \
   X(shear_damping_s,    "shear_damping", "--shear-damping", "s",         0.0,  0.1,  0.002, \
     "damping of small shear, over its stiffness; 0.002 by default") \
@@ -40,7 +40,7 @@ namespace screed {
     "share of the sunk volume that is compacted") \
   X(compaction_depth_m, "compaction_depth", "--compaction-depth", "m",   0.0,  1.0,  0.0, \
     "how much a place may lose by compaction in all; 0: any") \
-  X(drag_depth_m,       "drag_depth",    "--drag-depth",    "m",         0.0,  1.0,  0.0, \
+  X(drag_depth_m,       "drag_depth",    "--drag-depth",    "m",         0.0,  0.1,  0.0, \
     "thickness of the layer that a slipping surface digs away") \
   X(drag_share,         "drag_share",    "--drag-share",    "",          0.0,  1.0,  0.0, \
     "share of the surface's slip with which that layer goes along") \

@@ -12,7 +12,7 @@
 //   along_elastic = cell.pressure + (beyond < 0 ? unload : E) beyond
 //   pressure      = max(0, min(along_elastic, cell.pressure + rate sinking))
 //   units         = (along_elastic - pressure) / E                  in units of height
-//   damped        = pressure + R max(0, -v_z) share
+//   damped        = pressure + R max(0, sinking / dt) share     -v_z where the motion is imposed
 //
 // Shear. m is the mobilised share of the strength, along and across, carried with the material of
 // the running surface (shear_field.h); it acts at the centre of pressure. A surface has a friction
@@ -122,7 +122,7 @@ void SoilBed::advance_shear(const Range& range, const PressingBody& body, Footpr
 }
 
 ReactionLaw SoilBed::reaction_law(const Range& range, const PressingBody& body,
-                                  const FootprintContact& contact) const {
+                                  const FootprintContact& contact, double dt) const {
   const RunFrame& frame = range.frame;
   const Eigen::Vector3d left = frame.axes.col(1);
   const Eigen::Vector3d level_ahead = left.cross(Eigen::Vector3d::UnitZ()).normalized();
@@ -135,6 +135,7 @@ ReactionLaw SoilBed::reaction_law(const Range& range, const PressingBody& body,
   law.cell_area = cell_area_;
   law.height_unit = kHeightUnit_m;
   law.damping = soil_.damping_pa_s_per_m;
+  law.per_step = std::isfinite(body.mass_kg) ? 1.0 / dt : 0.0;
   law.cohesion = soil_.cohesion_pa;
   law.tan_friction = tan_friction_;
   // Where a surface has none of its own, the soil's strength alone counts.
@@ -192,7 +193,7 @@ void SoilBed::react(const Range& range, const PressingBody& body, FootprintConta
                     double dt) {
   contact.reaction = {};
   if (!range.touching) return;
-  const ReactionLaw law = reaction_law(range, body, contact);
+  const ReactionLaw law = reaction_law(range, body, contact, dt);
   ReactionSums sums;
   kernels_.react(&cells_[range.begin], &springs_[range.begin], range.end - range.begin, law, sums);
   const bool slips = law.digs && sums.slip > 0.0;

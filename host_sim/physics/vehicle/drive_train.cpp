@@ -1,6 +1,7 @@
 // One degree of freedom: wheels and their motors.
 #include "host_sim/physics/vehicle/drive_train.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace screed {
@@ -29,6 +30,7 @@ void DriveShaft::step(double voltage, double torque_n_m, double dt) {
                : (pushed - std::copysign(stopped_by, pushed)) / (1.0 + resist * dt / inertia_);
   angle_ += omega_ * dt;
   current_ = motors_ * motor_.current(voltage, omega_);
+  motor_work_ += std::max(0.0, motor_.torque_per_ampere() * current_ * omega_) * dt;
 }
 
 }  // namespace screed

@@ -108,6 +108,8 @@ class DriveShaft {
   double angle_rad() const { return angle_; }        ///< since the start
   double current_a() const { return current_; }      ///< of all its motors
   double inertia_kg_m2() const { return inertia_; }  ///< motors included
+  /// What its motors have done since the start while they drove it, J.
+  double motor_work_j() const { return motor_work_; }
 
  private:
   GearMotor motor_;
@@ -118,6 +120,7 @@ class DriveShaft {
   double omega_ = 0.0;
   double angle_ = 0.0;
   double current_ = 0.0;
+  double motor_work_ = 0.0;
 };
 
 }  // namespace screed

@@ -123,6 +123,7 @@ void Hull::reset_contacts() {
   const double ceiling =
       hard.max_height_within(motion.origin.x(), motion.origin.y(), reach_) - motion.origin.z();
   const Eigen::RowVector3d upwards = motion.rotation.row(2);
+  touches_.clear();
   TerrainContact contact;
   for (size_t i = 0; i < points_.size(); ++i) {
     if (upwards.dot(points_[i]) > ceiling) {
@@ -134,8 +135,14 @@ void Hull::reset_contacts() {
       bristles_[i].setZero();
       continue;
     }
-    const Eigen::Vector3d velocity = motion.velocity + motion.omega.cross(arm);
-    wrench.add(contact_force(law_, contact, velocity, velocity, dt, bristles_[i]), arm);
+    touches_.add(i, points_[i], arm, contact);
+  }
+  if (touches_.touches().empty()) return;
+  const ContactLaw law = touches_.softened(law_, motion, dt);
+  for (const GroundTouches::Touch& touch : touches_.touches()) {
+    const Eigen::Vector3d velocity = motion.velocity + motion.omega.cross(touch.arm);
+    wrench.add(contact_force(law, touch.contact, velocity, velocity, dt, bristles_[touch.point]),
+               touch.arm);
   }
 }
 

@@ -38,6 +38,7 @@ class Hull {
  private:
   std::vector<Eigen::Vector3d> points_;
   std::vector<Eigen::Vector3d> bristles_;  ///< a point
+  GroundTouches touches_;                  ///< of one step; kept for its room
   ContactLaw law_;
   std::vector<Footprint> boxes_;
   std::vector<Eigen::Isometry3d> box_poses_;

@@ -132,7 +132,7 @@ void RunningGear::carry_bristles(double speed, double dt) {
 [[gnu::flatten]] double RunningGear::stand_on(const HeightField& hard, const CarrierMotion& carrier,
                                               double speed, double dt, Wrench& wrench) {
   carry_bristles(speed, dt);
-  double along_surface = 0.0;
+  touches_.clear();
   TerrainContact contact;
   // A height field has no overhangs: a point on the upper side of the contour has a lower one right
   // below it, which touches first.
@@ -148,11 +148,16 @@ void RunningGear::carry_bristles(double speed, double dt) {
       continue;
     }
     bent_[i] = 1;
-    const Eigen::Vector3d along = carrier.rotation * along_[i];
-    const Eigen::Vector3d velocity = carrier.velocity + carrier.omega.cross(arm);
-    const Eigen::Vector3d force =
-        contact_force(law_, contact, velocity, velocity + speed * along, dt, bristles_[i]);
-    wrench.add(force, arm);
+    touches_.add(i, points_[i], arm, contact);
+  }
+  const ContactLaw law = touches_.softened(law_, carrier, dt);
+  double along_surface = 0.0;
+  for (const GroundTouches::Touch& touch : touches_.touches()) {
+    const Eigen::Vector3d along = carrier.rotation * along_[touch.point];
+    const Eigen::Vector3d velocity = carrier.velocity + carrier.omega.cross(touch.arm);
+    const Eigen::Vector3d force = contact_force(
+        law, touch.contact, velocity, velocity + speed * along, dt, bristles_[touch.point]);
+    wrench.add(force, touch.arm);
     along_surface += force.dot(along);
     normal_load_ += force.z();
   }

@@ -87,12 +87,61 @@ inline constexpr double kSlipSpeed = 1e-3;
 /// Sine of the axles' inclination from which running gear lies on its side.
 inline constexpr double kOnItsSide = 0.8;
 
-/// Motion of the carrying body at this step, world frame.
+/// The carrying body at this step, its motion in the world frame.
 struct CarrierMotion {
   Eigen::Vector3d origin;    ///< centre of mass
   Eigen::Matrix3d rotation;  ///< body to world
   Eigen::Vector3d velocity;  ///< of the centre of mass
   Eigen::Vector3d omega;
+  double mass_kg;
+  Eigen::Matrix3d inverse_inertia;  ///< in its own axes
+};
+
+// The points of a body that are in hard ground in one step, and how stiff the ground may be to
+// them.
+//
+// Springs and dampers are explicit: with k and c per point, and the body's velocities answering
+// forces at these points by at most lambda, a step of dt is stable while dt (c + dt k / 2) lambda
+// < 2. For a body that is too light for it, the ground is as much softer as it takes. lambda is
+// bounded by the points' number over the mass and the row sums of the inverse inertia times
+// sum(r^2 1 - r r^T), r from the centre of mass.
+
+class GroundTouches {
+ public:
+  struct Touch {
+    size_t point;
+    Eigen::Vector3d arm;  ///< world axes
+    TerrainContact contact;
+  };
+
+  void clear() {
+    touches_.clear();
+    spread_.setZero();
+  }
+  /// `at`: in the body's frame.
+  void add(size_t point, const Eigen::Vector3d& at, const Eigen::Vector3d& arm,
+           const TerrainContact& contact) {
+    touches_.push_back({point, arm, contact});
+    spread_ -= at * at.transpose();
+    spread_.diagonal().array() += at.squaredNorm();
+  }
+  const std::vector<Touch>& touches() const { return touches_; }
+  /// The law that a step of dt carries.
+  ContactLaw softened(ContactLaw law, const CarrierMotion& carrier, double dt) const {
+    constexpr double kMaxAsked = 1.5;  // of the 2 that would swing for ever
+    const double lambda = static_cast<double>(touches_.size()) / carrier.mass_kg +
+                          (carrier.inverse_inertia * spread_).cwiseAbs().rowwise().sum().maxCoeff();
+    const double asked = dt * (law.damping + 0.5 * dt * law.stiffness) * lambda;
+    if (asked > kMaxAsked) {
+      law.stiffness *= kMaxAsked / asked;
+      law.damping *= kMaxAsked / asked;
+    }
+    return law;
+  }
+
+ private:
+  std::vector<Touch> touches_;
+  Eigen::Matrix3d spread_ = Eigen::Matrix3d::Zero();
 };
 
 /// Sum of forces on the carrying body, about its centre of mass, world frame.
@@ -179,6 +228,7 @@ class RunningGear {
   Footprint side_footprint_;  ///< its lower surface when it lies on its side
   Eigen::Matrix3d axes_;      ///< forward, left, up of the contour in the carrier's frame
   ContactMemory memory_;
+  GroundTouches touches_;  ///< of one step; kept for its room
   double normal_load_ = 0.0;
   double sinkage_ = 0.0;
 };

@@ -1,6 +1,8 @@
 // A skid-steered robot in the world.
 #include "host_sim/physics/vehicle/vehicle.h"
 
+#include "host_sim/core/constants.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -207,6 +209,8 @@ CarrierMotion Vehicle::motion_of(size_t carrier) const {
   motion.rotation = rotation_to_eigen(dBodyGetRotation(body));
   motion.velocity = to_eigen(dBodyGetLinearVel(body));
   motion.omega = to_eigen(dBodyGetAngularVel(body));
+  motion.mass_kg = carriers_[carrier].mass;
+  motion.inverse_inertia = carriers_[carrier].inverse_inertia;
   return motion;
 }
 
@@ -321,6 +325,28 @@ ChassisState Vehicle::chassis() const {
   state.velocity = to_eigen(dBodyGetLinearVel(body)) - omega.cross(offset);
   state.omega_body = rotation.transpose() * omega;
   return state;
+}
+
+double Vehicle::energy_j() const {
+  double energy = 0.0;
+  for (size_t i = 0; i < carriers_.size(); ++i) {
+    const CarrierMotion motion = motion_of(i);
+    const Eigen::Vector3d omega = motion.rotation.transpose() * motion.omega;
+    energy += carriers_[i].mass *
+                  (0.5 * motion.velocity.squaredNorm() + kGravity_m_per_s2 * motion.origin.z()) +
+              0.5 * omega.dot(carriers_[i].inertia * omega);
+  }
+  for (const Shaft& shaft : shafts_) {
+    const double omega = shaft.shaft.omega_rad_per_s();
+    energy += 0.5 * shaft.shaft.inertia_kg_m2() * omega * omega;
+  }
+  return energy;
+}
+
+double Vehicle::motor_work_j() const {
+  double work = 0.0;
+  for (const Shaft& shaft : shafts_) work += shaft.shaft.motor_work_j();
+  return work;
 }
 
 double Vehicle::track_speed_m_per_s(Side side) const {

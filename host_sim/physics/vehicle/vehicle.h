@@ -49,6 +49,10 @@ class Vehicle : public VehicleState, private VehicleParts {
   void apply_forces(Terrain& terrain, const std::array<double, 2>& motor_voltage, double dt);
 
   ChassisState chassis() const override;
+  /// Of motion and height over z = 0, shafts included, J.
+  double energy_j() const;
+  /// What its motors have done since the start while they drove, J.
+  double motor_work_j() const;
 
   double track_speed_m_per_s(Side side) const override;
   double shaft_angle_rad(Side side) const override;

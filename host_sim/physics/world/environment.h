@@ -38,7 +38,7 @@ class RobotView {
   virtual ~RobotView() = default;
 
   /// True motion: means over the last kTickPeriod_us, ending now, not at the last tick (the
-  /// simulated microcontroller asks between ticks). Throws RunError when the physics has diverged.
+  /// simulated microcontroller asks between ticks).
   virtual ImuTruth motion() const = 0;
 
   /// Picks the robot up and lays it on its left side where it is.
@@ -64,7 +64,8 @@ class Environment {
  public:
   virtual ~Environment() = default;
 
-  /// One physics step, with a duty for each robot in their order.
+  /// One physics step, with a duty for each robot in their order. Throws RunError when a robot has
+  /// come to where nothing can have brought it.
   virtual void step(std::span<const DutyRatio> duty_ratios) = 0;
 
   virtual size_t robots() const = 0;

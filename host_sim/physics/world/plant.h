@@ -47,6 +47,10 @@ class PlantRobot : public RobotView {
   const std::array<int64_t, 2>& wrap_counts() const override { return wrap_counts_; }
   Eigen::Vector3d unwrapped_position() const override;
   const Battery& battery() const override { return battery_; }
+  /// Of its motion and height, less what motors and hands have given it, J.
+  double unpaid_energy_j() const {
+    return vehicle_.energy_j() - vehicle_.motor_work_j() - given_j_;
+  }
 
  private:
   struct ImuState {
@@ -62,6 +66,7 @@ class PlantRobot : public RobotView {
   Vehicle vehicle_;
   Battery battery_;
   double current_a_ = 0.0;        ///< from the battery in this step
+  double given_j_ = 0.0;          ///< by hands since the start
   Eigen::Vector3d imu_position_;  ///< in the frame of the chassis
   std::array<int64_t, 2> wrap_counts_ = {0, 0};
   /// A ring buffer of the last tick's steps and the one before; the newest stands at newest_.
@@ -116,6 +121,9 @@ class Plant : public Environment {
   void collide(double dt);
   /// Forces, integration and terrain of one physics step, with voltages_.
   void step_bodies();
+  double unpaid_energy_j() const;
+  /// Throws RunError when the robots have energy that nobody gave them.
+  void check_energy();
 
   double step_s_;
   int steps_per_tick_;
@@ -126,6 +134,8 @@ class Plant : public Environment {
   RobotContact contact_;
   std::vector<std::unique_ptr<PlantRobot>> robots_;
   std::vector<std::array<double, 2>> voltages_;  // of each robot's motors in this step
+  double mass_kg_ = 0.0;                         // of all robots
+  double most_energy_j_ = 0.0;  // that the robots can have without having been given it
   uint64_t steps_ = 0;
 };
 

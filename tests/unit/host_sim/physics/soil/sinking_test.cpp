@@ -37,6 +37,7 @@ struct SoilSpring {
   double virgin_slope;
   double x;
   double y;
+  double damper = 0.0;
   double sinking = 0.0;
 };
 
@@ -52,8 +53,11 @@ int solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& 
     block.virgin_slope[lane] = springs[i].virgin_slope;
     block.x[lane] = springs[i].x;
     block.y[lane] = springs[i].y;
+    block.damper[lane] = springs[i].damper;
   }
-  const int evaluations = screed::solve_sinking(body, dt, blocks, memory);
+  const bool damped = std::any_of(springs.begin(), springs.end(),
+                                  [](const SoilSpring& spring) { return spring.damper > 0.0; });
+  const int evaluations = screed::solve_sinking(body, dt, blocks, damped, memory);
   for (size_t i = 0; i < springs.size(); ++i) {
     springs[i].sinking = blocks[i / kLanes].sinking[i % kLanes];
   }
@@ -78,6 +82,29 @@ TEST(Sinking, ABodySinksAlongTheVirginLineByWhatItsWeightNeeds) {
   EXPECT_TRUE(memory.touching);
   EXPECT_EQ(memory.rate, Eigen::Vector3d::Zero());
   EXPECT_NEAR(memory.soil_acceleration.x(), slope * springs[0].sinking / mass, 1e-9);
+}
+
+TEST(Sinking, NoDamperIsTooStrongForTheStep) {
+  // m q / dt^2 = k d + D d - m g, d = -q: as one line, and of the damper only what goes down.
+  const double mass = 5.0;
+  const double slope = 2e5;
+  for (const double damper : {1e3, 1e12}) {
+    std::vector<SoilSpring> springs = {{0.0, 1e9, 0.0, slope, 0.0, 0.0, damper}};
+    BodyMemory memory;
+    solve_sinking(body_of(mass), kStep_s, springs, memory);
+    const double inertia = mass / (kStep_s * kStep_s);
+    const double expected = mass * kGravity_m_per_s2 / (inertia + slope + damper);
+    EXPECT_NEAR(springs[0].sinking / expected, 1.0, 1e-9) << damper;
+  }
+  std::vector<SoilSpring> springs = {{30.0, 3e6, 30.0, 1e3, 0.0, 0.0, 1e12}};
+  PressingBody body = body_of(mass);
+  body.velocity.z() = 0.002;
+  BodyMemory memory;
+  memory.touching = true;
+  memory.rate << 0.002, 0.0, 0.0;
+  solve_sinking(body, kStep_s, springs, memory);
+  const double inertia = mass / (kStep_s * kStep_s);
+  EXPECT_NEAR(springs[0].sinking, -(inertia * 0.002 * kStep_s + 30.0) / (inertia + 3e6), 1e-11);
 }
 
 TEST(Sinking, ABodyThatRisesUnloadsAlongTheElasticLineAndThenLetsGo) {

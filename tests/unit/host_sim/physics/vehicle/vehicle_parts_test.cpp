@@ -65,8 +65,15 @@ TEST(Hull, SlidesOverCohesiveSoilByItsOwnFriction) {
   belly.geometry = Box{{0.2, 0.1, 0.04}};
   hull.add(belly, Eigen::Isometry3d::Identity());
   hull.close(kFriction, 1.2);
-  CarrierMotion motion{{0.0, 0.0, 0.02 - 0.0005}, Eigen::Matrix3d::Identity(), {0.1, 0.0, 0.0}, {}};
-  motion.omega.setZero();
+  const CarrierMotion at_rest{Eigen::Vector3d::Zero(),
+                              Eigen::Matrix3d::Identity(),
+                              Eigen::Vector3d::Zero(),
+                              Eigen::Vector3d::Zero(),
+                              1.2,
+                              Eigen::Matrix3d::Zero()};
+  CarrierMotion motion = at_rest;
+  motion.origin.z() = 0.02 - 0.0005;
+  motion.velocity.x() = 0.1;
   BodyMemory memory;
   TerrainReaction reaction;
   for (int i = 0; i < 1000; ++i) {  // ten times as far as shears this soil

@@ -49,7 +49,7 @@ TEST(SoilOptions, HelpSaysSymbolUnitAndRange) {
   EXPECT_EQ(words("--repose").value, "NUMBER");
   EXPECT_EQ(words("--repose").range, "1 to 60");
   EXPECT_EQ(words("--elastic").value, "NUMBER");
-  EXPECT_EQ(words("--elastic").range, "10000 to 1e+12");
+  EXPECT_EQ(words("--elastic").range, "100000 to 1e+12");
   EXPECT_EQ(words("--repose").help, "Angle of repose [deg]");
   EXPECT_EQ(words("--elastic").help, "Stiffness of unloading E [Pa/m]");
   EXPECT_EQ(words("--k-phi").help,
