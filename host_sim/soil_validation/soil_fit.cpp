@@ -261,8 +261,8 @@ bool changes_nothing(const Residuals& residuals, Eigen::VectorXd variables, Eige
   return spread_at(residuals, variables) == spread;
 }
 
-/// An error of a variable that is as large as its whole range, -pi/2..pi/2 with its ends.
-constexpr double kWholeRange = 1.0;
+/// From this error on, of a range of -pi/2..pi/2, a variable is not determined.
+constexpr double kMaxError = 1.0;
 
 /// Standard errors of the variables. A direction in which nothing changes has an endless one.
 Eigen::VectorXd errors_of(const Eigen::MatrixXd& jacobian, double variance) {
@@ -330,7 +330,7 @@ SoilFit fit_soil(const SoilFitProblem& given, const std::function<void(int)>& pr
     const double error = errors[index];
     const Free& one = free[i];
     if (idle[i]) *one.value = one.start;
-    const bool determined = error < kWholeRange && !differs(minima, index);
+    const bool determined = error < kMaxError && !differs(minima, index);
     FittedParameter parameter{one.key,   one.start, *one.value, 0.0, one.bounded.at_bound(variable),
                               determined};
     parameter.standard_error = parameter.at_bound || !parameter.determined

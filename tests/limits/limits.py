@@ -2,7 +2,7 @@
 """Runs worlds with keys at the ends of their ranges, and with pairs of keys at random.
 
 A run may end by itself, with one line and exit 1, or be refused with exit 2. It may not crash, and not end well with a
-robot that nothing can have brought where it is: lifted faster than its motors can, but for what it was dropped from.
+robot that nothing can have brought where it is: lifted faster than its motors can, by no hand.
 """
 import argparse
 import concurrent.futures
@@ -114,11 +114,13 @@ def run(screed, name, sets):
                 return "FAIL", f"exit {done.returncode}: {said}"
             if any(pathlib.Path(folder).rglob("*.partial")):
                 return "FAIL", "left a .partial behind: " + said
+        if not (out / "frames.csv").exists():
             return ("refused" if done.returncode == 2 else "ended"), said
+        # It has a result, with exit 1 too: a robot that was stopped by a fault, say.
         lift, highest = greatest_lift(out / "frames.csv")
-        dropped = any(one.startswith("vehicle.z=") for one in sets)
-        if lift > MOST_LIFT_M and not dropped:
-            return "FAIL", f"exit 0, lifted by {lift:.3g} m, at most {highest:.3g} m high"
+        by_hand = any(one.startswith(("vehicle.z=", "experiment.lay_on_side_at=")) for one in sets)
+        if lift > MOST_LIFT_M and not by_hand:
+            return "FAIL", f"exit {done.returncode}, lifted by {lift:.3g} m, at most {highest:.3g} m high: {said}"
         return "ran", f"lift {lift:.3g} m"
 
 
@@ -160,7 +162,7 @@ def main():
         pair = chance.sample(sorted(ends), 2)
         runs.append((chance.choice(worlds), [f"{key}={between(ends[key], chance)}" for key in pair]))
     counts = {}
-    for experiment in ("gravel_bed", "soft_bed"):
+    for experiment in ("gravel_bed", "soft_bed"):  # below 165 MB the libraries alone do not fit
         for megabytes in range(165, 400, options.memory_step):
             verdict, what = run_short_of_memory(options.screed, experiment, megabytes)
             counts[verdict] = counts.get(verdict, 0) + 1

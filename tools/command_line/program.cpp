@@ -7,6 +7,7 @@
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -241,7 +242,7 @@ int run_program(Command& program, int argc, char** argv, const std::function<int
   } catch (const InputError& error) {
     return fail(kWrongInput, error.what());
   } catch (const std::bad_alloc&) {
-    return fail(kFailed, "out of memory: smaller beds, wider cells and larger particles need less");
+    return fail(kFailed, "out of memory");
   } catch (const std::exception& error) {
     return fail(kFailed, error.what());
   }

@@ -2,7 +2,6 @@
 #include "host_sim/physics/vehicle/model_report.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstdarg>
@@ -110,25 +109,21 @@ class Checks {
     }
   }
 
-  /// Names that say another corner than where the wheel is.
+  /// Names that say another side or end than where the wheel is.
   void names() {
-    constexpr struct {
-      const char* word;
-      size_t end;  // 0 side, 1 end
-      size_t is;
-    } kWords[] = {{"left", 0, 0}, {"right", 0, 1}, {"front", 1, 0}, {"rear", 1, 1}, {"back", 1, 1}};
-    constexpr const char* kPlaces[2][2] = {{"left", "right"}, {"front", "rear"}};
+    constexpr const char* kSides[] = {"left", "right"};
+    constexpr const char* kEnds[] = {"front", "rear"};
     for (size_t side = 0; side < 2; ++side) {
       for (size_t end = 0; end < 2; ++end) {
-        std::string name = name_of(assembly_, assembly_.wheels[side][end]);
-        const std::string given = name;
+        const std::string& given = name_of(assembly_, assembly_.wheels[side][end]);
+        std::string name = given;
         for (char& letter : name) letter = static_cast<char>(std::tolower(letter));
-        const std::array<size_t, 2> place = {side, end};
-        for (const auto& word : kWords) {
-          if (name.find(word.word) == std::string::npos || word.is == place[word.end]) continue;
-          warn(text("wheel '%s' is the %s %s one by its place, not by its name", given.c_str(),
-                    kPlaces[1][end], kPlaces[0][side]));
-        }
+        const auto says = [&](const char* word) { return name.find(word) != std::string::npos; };
+        const bool other_side = says(kSides[1 - side]) && !says(kSides[side]);
+        const bool other_end = says(kEnds[1 - end]) && !says(kEnds[end]);
+        if (!other_side && !other_end) continue;
+        warn(text("wheel '%s' is the %s %s one by its place, not by its name", given.c_str(),
+                  kEnds[end], kSides[side]));
       }
     }
   }

@@ -1,10 +1,10 @@
 // A skid-steered robot in the world.
 #include "host_sim/physics/vehicle/vehicle.h"
 
-#include "host_sim/core/constants.h"
-
 #include <algorithm>
 #include <limits>
+
+#include "host_sim/core/constants.h"
 
 namespace screed {
 namespace {
