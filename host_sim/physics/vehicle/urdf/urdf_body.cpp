@@ -134,18 +134,22 @@ std::filesystem::path mesh_path(const std::filesystem::path& urdf_file, std::str
   name.erase(0, slash == std::string::npos ? kPackage.size() : slash + 1);
   std::error_code error;
   std::filesystem::path folder = std::filesystem::absolute(urdf_file, error).parent_path();
+  std::string searched;
   for (int up = 0; up <= kFoldersUp; ++up) {
     for (const std::filesystem::path& place : {folder / name, folder / package / name}) {
       if (std::filesystem::is_regular_file(place, error)) return place;
     }
+    searched += (up == 0 ? "" : ", ") + folder.string();
+    if (folder == folder.parent_path()) break;
     folder = folder.parent_path();
   }
-  return urdf_file.parent_path() / name;
+  throw InputError("mesh of package '" + package + "' is not found: neither " + name + " nor " +
+                   package + "/" + name + " is in " + searched);
 }
 
 Shape to_shape(const TiXmlElement& xml, const urdf::Geometry& geometry,
                const std::filesystem::path& urdf_file, const LinkElement& link,
-               const Diagnostic& diagnostic) {
+               Diagnostic& diagnostic) {
   Shape shape;
   shape.pose = origin_of(xml);
   if (geometry.type == urdf::Geometry::BOX) {
@@ -160,20 +164,22 @@ Shape to_shape(const TiXmlElement& xml, const urdf::Geometry& geometry,
     try {
       shape.geometry = load_mesh(mesh_path(urdf_file, mesh.filename), to_eigen(mesh.scale));
     } catch (const InputError& error) {
-      diagnostic.at_element(*link.xml, error.what());
+      diagnostic.fault(*link.xml, error.what());
     }
   }
   return shape;
 }
 
+// Massless when mass and moments are zero, as exporters write for a mere place.
 Inertia to_inertia(const urdf::Inertial& inertial, const LinkElement& link,
-                   const Diagnostic& diagnostic) {
+                   Diagnostic& diagnostic) {
   Inertia inertia;
   inertia.mass = inertial.mass;
   inertia.pose = origin_of(*link.xml->FirstChildElement("inertial"));
   inertia.tensor << inertial.ixx, inertial.ixy, inertial.ixz,  //
       inertial.ixy, inertial.iyy, inertial.iyz,                //
       inertial.ixz, inertial.iyz, inertial.izz;
+  if (inertia.mass == 0.0 && inertia.tensor.isZero(0.0)) return Inertia{};
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia.tensor,
                                                               Eigen::EigenvaluesOnly);
   const Eigen::Vector3d& moments = solver.eigenvalues();  // ascending
@@ -182,10 +188,11 @@ Inertia to_inertia(const urdf::Inertial& inertial, const LinkElement& link,
   const std::string values = "principal moments " + to_text(moments[0]) + ", " +
                              to_text(moments[1]) + ", " + to_text(moments[2]) + " kg m^2";
   if (!(moments[0] > 0.0)) {
-    diagnostic.at_element(element, "<inertia> is not positive definite (" + values + ")");
+    diagnostic.fault(element, "<inertia> is not positive definite (" + values + ")");
+    return inertia;
   }
   if (moments[2] > (moments[0] + moments[1]) * (1.0 + kRelativeInertiaTolerance)) {
-    diagnostic.at_element(
+    diagnostic.fault(
         element,
         "<inertia> breaks the triangle inequality, the greatest moment exceeds the sum "
         "of the others (" +
@@ -197,7 +204,7 @@ Inertia to_inertia(const urdf::Inertial& inertial, const LinkElement& link,
 }  // namespace
 
 AssemblyBody to_body(const LinkElement& element, const urdf::Link& link,
-                     const std::filesystem::path& urdf_file, const Diagnostic& diagnostic) {
+                     const std::filesystem::path& urdf_file, Diagnostic& diagnostic) {
   AssemblyBody body;
   body.name = element.name;
   if (link.inertial) body.inertia = to_inertia(*link.inertial, element, diagnostic);

@@ -25,6 +25,6 @@ namespace screed::urdf_parts {
 
 /// The body without its pose. Meshes are searched relative to the folder of urdf_file.
 AssemblyBody to_body(const LinkElement& element, const ::urdf::Link& link,
-                     const std::filesystem::path& urdf_file, const Diagnostic& diagnostic);
+                     const std::filesystem::path& urdf_file, Diagnostic& diagnostic);
 
 }  // namespace screed::urdf_parts

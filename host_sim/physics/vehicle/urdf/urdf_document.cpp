@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <mutex>
@@ -58,16 +59,43 @@ std::string attribute(const TiXmlElement& element, const char* name) {
   return value == nullptr ? std::string() : std::string(value);
 }
 
-void Diagnostic::about_file(const std::string& what) const {
-  throw InputError(one_line(file_.string() + ": " + what));
+void Diagnostic::fault(const TiXmlElement& element, const std::string& what) {
+  fault_at_row(element.Row(), owner(element) + what);
 }
 
-void Diagnostic::at_row(int row, const std::string& what) const {
+void Diagnostic::fault_at_row(int row, const std::string& what) {
   const std::string line = row > 0 ? ":" + std::to_string(row) : "";  // 0: TinyXML knows none
-  throw InputError(one_line(file_.string() + line + ": " + what));
+  faults_.push_back({row, one_line(file_.string() + line + ": " + what)});
 }
 
-void Diagnostic::at_element(const TiXmlElement& element, const std::string& what) const {
+void Diagnostic::stop_at_faults() const {
+  constexpr std::size_t kMostShown = 20;
+  if (faults_.empty()) return;
+  std::vector<Fault> sorted = faults_;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Fault& a, const Fault& b) { return a.row < b.row; });
+  std::string all;
+  for (std::size_t i = 0; i < std::min(sorted.size(), kMostShown); ++i) {
+    all += all.empty() ? "" : "\n";
+    all += sorted[i].text;
+  }
+  if (sorted.size() > kMostShown) {
+    all += "\n" + file_.string() + ": and " + std::to_string(sorted.size() - kMostShown) + " more";
+  }
+  throw InputError(all);
+}
+
+void Diagnostic::about_file(const std::string& what) {
+  at_row(0, what);
+}
+
+void Diagnostic::at_row(int row, const std::string& what) {
+  fault_at_row(row, what);
+  stop_at_faults();
+  std::abort();  // not reached: there is a fault
+}
+
+void Diagnostic::at_element(const TiXmlElement& element, const std::string& what) {
   at_row(element.Row(), owner(element) + what);
 }
 
@@ -116,8 +144,7 @@ const TiXmlElement* find_macro(const TiXmlElement& element) {
 
 }  // namespace
 
-void parse_xml(const std::filesystem::path& file, const Diagnostic& diagnostic,
-               TiXmlDocument& xml) {
+void parse_xml(const std::filesystem::path& file, Diagnostic& diagnostic, TiXmlDocument& xml) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     diagnostic.about_file("no such file, or not a file");
@@ -186,7 +213,7 @@ constexpr NumberRule kNumberRules[] = {
     {"cylinder", "radius", 1, Sign::Positive, true},
     {"cylinder", "length", 1, Sign::Positive, true},
     {"mesh", "scale", 3, Sign::Positive, false},
-    {"mass", "value", 1, Sign::Positive, true},
+    {"mass", "value", 1, Sign::NotNegative, true},
     {"inertia", "ixx", 1, Sign::Any, true},
     {"inertia", "ixy", 1, Sign::Any, true},
     {"inertia", "ixz", 1, Sign::Any, true},
@@ -201,11 +228,10 @@ constexpr NumberRule kNumberRules[] = {
     {"dynamics", "friction", 1, Sign::NotNegative, false},
 };
 
-void check_number(const TiXmlElement& element, const NumberRule& rule,
-                  const Diagnostic& diagnostic) {
+void check_number(const TiXmlElement& element, const NumberRule& rule, Diagnostic& diagnostic) {
   const std::string tag = "<" + element.ValueStr() + "> ";
   if (element.Attribute(rule.name) == nullptr) {
-    if (rule.required) diagnostic.at_element(element, tag + "needs " + in_quotes(rule.name));
+    if (rule.required) diagnostic.fault(element, tag + "needs " + in_quotes(rule.name));
     return;
   }
   const std::string text = attribute(element, rule.name);
@@ -221,39 +247,40 @@ void check_number(const TiXmlElement& element, const NumberRule& rule,
   const std::string kind = rule.sign == Sign::Positive      ? "positive finite"
                            : rule.sign == Sign::NotNegative ? "finite, not negative"
                                                             : "finite";
-  diagnostic.at_element(element, tag + in_quotes(rule.name) + " is '" + text +
-                                     "'; allowed: " + (rule.count == 1 ? "one " : "three ") + kind +
-                                     " number" + (rule.count == 1 ? "" : "s separated by spaces"));
+  diagnostic.fault(element, tag + in_quotes(rule.name) + " is '" + text +
+                                "'; allowed: " + (rule.count == 1 ? "one " : "three ") + kind +
+                                " number" + (rule.count == 1 ? "" : "s separated by spaces"));
 }
 
-void check_shape(const TiXmlElement& element, const Diagnostic& diagnostic) {
+void check_shape(const TiXmlElement& element, Diagnostic& diagnostic) {
   const TiXmlElement* geometry = element.FirstChildElement("geometry");
   const TiXmlElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
   if (shape == nullptr) {
-    diagnostic.at_element(element, "<" + element.ValueStr() +
-                                       "> needs a <geometry> with a box, cylinder, sphere or mesh");
+    return diagnostic.fault(
+        element,
+        "<" + element.ValueStr() + "> needs a <geometry> with a box, cylinder, sphere or mesh");
   }
   const std::string& kind = shape->ValueStr();
   if (kind != "box" && kind != "cylinder" && kind != "sphere" && kind != "mesh") {
-    diagnostic.at_element(
+    diagnostic.fault(
         *shape, "geometry <" + kind + "> is not supported; allowed: box, cylinder, sphere, mesh");
   }
   if (kind == "mesh" && attribute(*shape, "filename").empty()) {
-    diagnostic.at_element(*shape, "<mesh> needs 'filename'");
+    diagnostic.fault(*shape, "<mesh> needs 'filename'");
   }
 }
 
 }  // namespace
 
 // Everything below a link or a joint.
-void check_values(const TiXmlElement& parent, const Diagnostic& diagnostic) {
+void check_values(const TiXmlElement& parent, Diagnostic& diagnostic) {
   for (const TiXmlElement* element = parent.FirstChildElement(); element != nullptr;
        element = element->NextSiblingElement()) {
     const std::string& tag = element->ValueStr();
     if (tag == "visual" || tag == "collision") check_shape(*element, diagnostic);
     for (const char* part : {"mass", "inertia"}) {
       if (tag == "inertial" && element->FirstChildElement(part) == nullptr) {
-        diagnostic.at_element(*element, "<inertial> needs <" + std::string(part) + ">");
+        diagnostic.fault(*element, "<inertial> needs <" + std::string(part) + ">");
       }
     }
     for (const NumberRule& rule : kNumberRules) {
@@ -266,18 +293,21 @@ void check_values(const TiXmlElement& parent, const Diagnostic& diagnostic) {
 namespace {
 
 template <typename Item>
-void read_items(const TiXmlElement& robot, const char* tag, const Diagnostic& diagnostic,
+void read_items(const TiXmlElement& robot, const char* tag, Diagnostic& diagnostic,
                 std::vector<Item>& items) {
   for (const TiXmlElement* element = robot.FirstChildElement(tag); element != nullptr;
        element = element->NextSiblingElement(tag)) {
     const std::string name = attribute(*element, "name");
-    if (name.empty())
-      diagnostic.at_row(element->Row(), "<" + std::string(tag) + "> needs a 'name'");
+    if (name.empty()) {
+      diagnostic.fault_at_row(element->Row(), "<" + std::string(tag) + "> needs a 'name'");
+      continue;
+    }
     if (const int first = index_of(items, name); first >= 0) {
-      diagnostic.at_row(element->Row(), std::string(tag) + " " + in_quotes(name) +
-                                            " is there twice, first on line " +
-                                            std::to_string(items[at(first)].xml->Row()) +
-                                            "; names are unique");
+      diagnostic.fault_at_row(element->Row(), std::string(tag) + " " + in_quotes(name) +
+                                                  " is there twice, first on line " +
+                                                  std::to_string(items[at(first)].xml->Row()) +
+                                                  "; names are unique");
+      continue;
     }
     Item item;
     item.name = name;
@@ -287,16 +317,17 @@ void read_items(const TiXmlElement& robot, const char* tag, const Diagnostic& di
 }
 
 int linked_body(const JointElement& joint, const char* role, const std::vector<LinkElement>& links,
-                const Diagnostic& diagnostic) {
+                Diagnostic& diagnostic) {
   const TiXmlElement* element = joint.xml->FirstChildElement(role);
   const std::string name = element == nullptr ? std::string() : attribute(*element, "link");
   if (name.empty()) {
-    diagnostic.at_element(*joint.xml, "needs <" + std::string(role) + " link=\"...\"/>");
+    diagnostic.fault(*joint.xml, "needs <" + std::string(role) + " link=\"...\"/>");
+    return -1;
   }
   const int link = index_of(links, name);
   if (link < 0) {
-    diagnostic.at_element(*joint.xml,
-                          std::string(role) + " link " + in_quotes(name) + " does not exist");
+    diagnostic.fault(*joint.xml,
+                     std::string(role) + " link " + in_quotes(name) + " does not exist");
   }
   return link;
 }
@@ -308,31 +339,31 @@ int parent_link(const Outline& outline, int link) {
 
 }  // namespace
 
-Outline read_outline(const TiXmlElement& robot, const Diagnostic& diagnostic) {
+Outline read_outline(const TiXmlElement& robot, Diagnostic& diagnostic) {
   Outline outline;
   read_items(robot, "link", diagnostic, outline.links);
   read_items(robot, "joint", diagnostic, outline.joints);
+  diagnostic.stop_at_faults();  // a name left out would be missed again wherever it is used
 
   if (outline.links.empty()) diagnostic.about_file("there is no <link>: a robot has some");
   for (std::size_t j = 0; j < outline.joints.size(); ++j) {
     JointElement& joint = outline.joints[j];
     joint.type = attribute(*joint.xml, "type");
     if (joint.type != "fixed" && joint.type != "revolute" && joint.type != "continuous") {
-      diagnostic.at_element(*joint.xml,
-                            "type " + in_quotes(joint.type) +
-                                " is not supported; allowed: fixed, revolute, continuous");
+      diagnostic.fault(*joint.xml, "type " + in_quotes(joint.type) +
+                                       " is not supported; allowed: fixed, revolute, continuous");
     }
     if (joint.xml->FirstChildElement("mimic") != nullptr) {
-      diagnostic.at_element(*joint.xml, "<mimic> is not supported");
+      diagnostic.fault(*joint.xml, "<mimic> is not supported");
     }
     joint.parent = linked_body(joint, "parent", outline.links, diagnostic);
     joint.child = linked_body(joint, "child", outline.links, diagnostic);
+    if (joint.child < 0) continue;
     LinkElement& child = outline.links[at(joint.child)];
     if (child.parent_joint >= 0) {
-      diagnostic.at_element(*joint.xml, "link " + in_quotes(child.name) +
-                                            " has two parents, joint " +
-                                            in_quotes(outline.joints[at(child.parent_joint)].name) +
-                                            " and this one; a robot is a tree");
+      diagnostic.fault(*joint.xml, "link " + in_quotes(child.name) + " has two parents, joint " +
+                                       in_quotes(outline.joints[at(child.parent_joint)].name) +
+                                       " and this one; a robot is a tree");
     }
     child.parent_joint = static_cast<int>(j);
   }
@@ -341,7 +372,7 @@ Outline read_outline(const TiXmlElement& robot, const Diagnostic& diagnostic) {
 
 // Every link has at most one parent by now: it is a tree when nobody is its own ancestor and only
 // one has no parent.
-void check_tree(const Outline& outline, const Diagnostic& diagnostic) {
+void check_tree(const Outline& outline, Diagnostic& diagnostic) {
   const LinkElement* root = nullptr;
   for (std::size_t i = 0; i < outline.links.size(); ++i) {
     const LinkElement& link = outline.links[i];
@@ -355,8 +386,8 @@ void check_tree(const Outline& outline, const Diagnostic& diagnostic) {
     }
     if (link.parent_joint >= 0) continue;
     if (root != nullptr) {
-      diagnostic.at_element(*link.xml, "neither this link nor link " + in_quotes(root->name) +
-                                           " is the child of a joint; a robot is one tree");
+      diagnostic.fault(*link.xml, "neither this link nor link " + in_quotes(root->name) +
+                                      " is the child of a joint; a robot is one tree");
     }
     root = &link;
   }
@@ -411,7 +442,7 @@ void remove_unused(TiXmlElement& parent, bool is_robot) {
 
 }  // namespace
 
-urdf::ModelInterfaceSharedPtr parse_model(const TiXmlDocument& xml, const Diagnostic& diagnostic) {
+urdf::ModelInterfaceSharedPtr parse_model(const TiXmlDocument& xml, Diagnostic& diagnostic) {
   TiXmlDocument reduced(xml);
   remove_unused(*reduced.RootElement(), true);
   TiXmlPrinter printer;

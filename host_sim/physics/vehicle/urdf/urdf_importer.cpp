@@ -23,35 +23,36 @@ namespace {
 constexpr double kMinAxleY = 0.9962;  // cos 5 degrees
 
 // What moves on its own needs mass.
-void check_masses(const Assembly& assembly, const Outline& outline, const Diagnostic& diagnostic) {
+void check_masses(const Assembly& assembly, const Outline& outline, Diagnostic& diagnostic) {
   for (std::size_t i = 0; i < assembly.bodies.size(); ++i) {
     const int link = static_cast<int>(i);
     const int joint = outline.links[i].parent_joint;
     if (joint >= 0 && assembly.joints[at(joint)].kind == AssemblyJoint::Kind::Fixed) continue;
     if (composed_inertia(assembly, rigid_group(assembly, link)).mass > 0.0) continue;
-    diagnostic.at_element(
+    diagnostic.fault(
         *outline.links[i].xml,
         "needs an <inertial> with a mass, here or on a link fixed to it: it moves on its own");
   }
 }
 
 // Its place is constant.
-void check_imu(const Assembly& assembly, const Outline& outline, const Diagnostic& diagnostic) {
+void check_imu(const Assembly& assembly, const Outline& outline, Diagnostic& diagnostic) {
   if (assembly.imu < 0) return;
   const std::vector<int> rigid = rigid_group(assembly, assembly.chassis);
   if (std::find(rigid.begin(), rigid.end(), assembly.imu) != rigid.end()) return;
-  diagnostic.at_element(*outline.links[at(assembly.imu)].xml,
-                        "the IMU must be fixed to the chassis, link " +
-                            in_quotes(assembly.bodies[at(assembly.chassis)].name));
+  diagnostic.fault(*outline.links[at(assembly.imu)].xml,
+                   "the IMU must be fixed to the chassis, link " +
+                       in_quotes(assembly.bodies[at(assembly.chassis)].name));
 }
 
 // What a wheel's link rolls on, in the frame of the chassis. Running gear turns about y.
 AssemblyWheel to_wheel(const Assembly& assembly, int link, const Outline& outline,
-                       const Diagnostic& diagnostic) {
+                       Diagnostic& diagnostic) {
   const AssemblyBody& body = assembly.bodies[at(link)];
   const AssemblyJoint* joint = assembly.joint_to(link);
   if (joint == nullptr) {
-    diagnostic.at_element(*outline.links[at(link)].xml, "a wheel must be the child of a joint");
+    diagnostic.fault(*outline.links[at(link)].xml, "a wheel must be the child of a joint");
+    return {};
   }
   // A fixed one has an axis only by chance.
   const Eigen::Vector3d axle = joint->kind == AssemblyJoint::Kind::Fixed
@@ -59,38 +60,48 @@ AssemblyWheel to_wheel(const Assembly& assembly, int link, const Outline& outlin
                                    : joint->axis;
   if (std::abs(axle.y()) < kMinAxleY) {
     const JointElement& element = outline.joints[at(outline.links[at(link)].parent_joint)];
-    diagnostic.at_element(*element.xml, "the axle of wheel " + in_quotes(body.name) +
-                                            " is not along y of the chassis, but along " +
-                                            to_text(axle.x()) + " " + to_text(axle.y()) + " " +
-                                            to_text(axle.z()) +
-                                            "; wheels roll straight ahead, up to 5 degrees off");
+    diagnostic.fault(*element.xml, "the axle of wheel " + in_quotes(body.name) +
+                                       " is not along y of the chassis, but along " +
+                                       to_text(axle.x()) + " " + to_text(axle.y()) + " " +
+                                       to_text(axle.z()) +
+                                       "; wheels roll straight ahead, up to 5 degrees off");
+    return {};
   }
   try {
     const WheelRim rim = wheel_rim(body, body.pose.linear().transpose() * axle);
     const Eigen::Vector3d centre = body.pose.translation() + rim.offset_m * axle;
     return {link, centre, rim.radius_m, rim.width_m, rim.source};
   } catch (const InputError& error) {
-    diagnostic.at_element(*outline.links[at(link)].xml, std::string("this wheel ") + error.what());
+    diagnostic.fault(*outline.links[at(link)].xml, std::string("this wheel ") + error.what());
+    return {};
   }
 }
 
 }  // namespace
 
 Assembly import_urdf(const std::filesystem::path& file, const UrdfOptions& options) {
-  const Diagnostic diagnostic(file);
+  Diagnostic diagnostic(file);
   TiXmlDocument xml;
   parse_xml(file, diagnostic, xml);
   const TiXmlElement& robot = *xml.RootElement();
   const Outline outline = read_outline(robot, diagnostic);
-  check_tree(outline, diagnostic);
   for (const LinkElement& link : outline.links) check_values(*link.xml, diagnostic);
   for (const JointElement& joint : outline.joints) check_values(*joint.xml, diagnostic);
+  diagnostic.stop_at_faults();
+  check_tree(outline, diagnostic);
+  diagnostic.stop_at_faults();
   const urdf::ModelInterfaceSharedPtr model = parse_model(xml, diagnostic);
 
   std::vector<JointData> joints;
   for (const JointElement& element : outline.joints) {
     joints.push_back(to_joint(element, *model->getJoint(element.name), diagnostic));
   }
+  Assembly assembly;
+  assembly.name = model->getName();
+  for (const LinkElement& element : outline.links) {
+    assembly.bodies.push_back(to_body(element, *model->getLink(element.name), file, diagnostic));
+  }
+  diagnostic.stop_at_faults();
   const int chassis = find_chassis(outline, options, diagnostic);
   const WheelLinks wheels =
       find_wheels(outline, link_poses(outline, chassis, joints), options, diagnostic);
@@ -103,14 +114,8 @@ Assembly import_urdf(const std::filesystem::path& file, const UrdfOptions& optio
   if (options.leg_angle_rad)
     set_leg_angle(*options.leg_angle_rad, outline, chassis, joints, diagnostic);
 
-  Assembly assembly;
-  assembly.name = model->getName();
   const std::vector<Eigen::Isometry3d> poses = link_poses(outline, chassis, joints);
-  for (std::size_t i = 0; i < outline.links.size(); ++i) {
-    const LinkElement& element = outline.links[i];
-    assembly.bodies.push_back(to_body(element, *model->getLink(element.name), file, diagnostic));
-    assembly.bodies.back().pose = poses[i];
-  }
+  for (std::size_t i = 0; i < poses.size(); ++i) assembly.bodies[i].pose = poses[i];
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const JointElement& element = outline.joints[j];
     const JointData& data = joints[j];
@@ -136,6 +141,7 @@ Assembly import_urdf(const std::filesystem::path& file, const UrdfOptions& optio
       assembly.wheels[side][end] = to_wheel(assembly, wheels[side][end], outline, diagnostic);
     }
   }
+  diagnostic.stop_at_faults();
   return assembly;
 }
 

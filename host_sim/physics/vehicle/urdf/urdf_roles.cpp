@@ -20,7 +20,7 @@ constexpr double kAngleTolerance_rad = 1e-6;
 
 // A fixed joint's axis is of use too (it can be held at another angle), but urdfdom drops it: read
 // from the XML.
-std::optional<Eigen::Vector3d> joint_axis(const JointElement& joint, const Diagnostic& diagnostic) {
+std::optional<Eigen::Vector3d> joint_axis(const JointElement& joint, Diagnostic& diagnostic) {
   const TiXmlElement* element = joint.xml->FirstChildElement("axis");
   if (element == nullptr) {
     if (joint.type == "fixed") return {};
@@ -30,7 +30,9 @@ std::optional<Eigen::Vector3d> joint_axis(const JointElement& joint, const Diagn
   const Eigen::Vector3d axis(xyz[0], xyz[1], xyz[2]);
   // stableNorm: neither overflow nor underflow makes an odd axis look like zero.
   if (axis.stableNorm() == 0.0) {
-    diagnostic.at_element(*element, "<axis> is zero; it needs a direction");
+    // Exporters write this into every fixed joint, where URDF gives it no meaning.
+    if (joint.type != "fixed") diagnostic.fault(*element, "<axis> is zero; it needs a direction");
+    return {};
   }
   return axis.stableNormalized();
 }
@@ -42,8 +44,7 @@ bool in_range(const JointData& joint, double angle_rad) {
 
 }  // namespace
 
-JointData to_joint(const JointElement& element, const urdf::Joint& joint,
-                   const Diagnostic& diagnostic) {
+JointData to_joint(const JointElement& element, const urdf::Joint& joint, Diagnostic& diagnostic) {
   JointData data;
   data.origin = origin_of(*element.xml);
   data.axis = joint_axis(element, diagnostic);
@@ -60,14 +61,13 @@ JointData to_joint(const JointElement& element, const urdf::Joint& joint,
   data.lower_rad = joint.limits->lower;
   data.upper_rad = joint.limits->upper;
   if (data.lower_rad > data.upper_rad) {
-    diagnostic.at_element(limit, "<limit> lower " + to_text(data.lower_rad) + " is above upper " +
-                                     to_text(data.upper_rad));
+    diagnostic.fault(limit, "<limit> lower " + to_text(data.lower_rad) + " is above upper " +
+                                to_text(data.upper_rad));
   }
   return data;
 }
 
-void hold(JointData& joint, const JointElement& element, double angle_rad,
-          const Diagnostic& diagnostic) {
+void hold(JointData& joint, const JointElement& element, double angle_rad, Diagnostic& diagnostic) {
   if (!joint.axis) diagnostic.at_element(*element.xml, "has no <axis> to turn it about");
   if (!std::isfinite(angle_rad)) {
     diagnostic.at_element(*element.xml, "the angle to hold it at is not finite");
@@ -102,7 +102,7 @@ std::vector<Eigen::Isometry3d> link_poses(const Outline& outline, int chassis,
 }
 
 void set_leg_angle(double angle_rad, const Outline& outline, int chassis,
-                   std::vector<JointData>& joints, const Diagnostic& diagnostic) {
+                   std::vector<JointData>& joints, Diagnostic& diagnostic) {
   if (!std::isfinite(angle_rad)) diagnostic.about_file("the leg angle is not finite");
   const std::vector<Eigen::Isometry3d> poses = link_poses(outline, chassis, joints);
   for (const std::string_view corner : {"fl_", "fr_", "bl_", "br_"}) {
@@ -158,7 +158,7 @@ constexpr double kSamePlace_m = 1e-3;
 
 /// Of a link that an option names.
 int named_link(const Outline& outline, const std::string& name, const char* key,
-               const Diagnostic& diagnostic) {
+               Diagnostic& diagnostic) {
   const int link = index_of(outline.links, name);
   if (link >= 0) return link;
   std::string all;
@@ -171,7 +171,9 @@ int named_link(const Outline& outline, const std::string& name, const char* key,
 }
 
 bool has_mass(const LinkElement& link) {
-  return link.xml->FirstChildElement("inertial") != nullptr;
+  const TiXmlElement* inertial = link.xml->FirstChildElement("inertial");
+  if (inertial == nullptr) return false;
+  return parse_numbers(attribute(*inertial->FirstChildElement("mass"), "value"))[0] > 0.0;
 }
 
 bool is_fixed_to(const Outline& outline, int link, int ancestor) {
@@ -219,7 +221,7 @@ std::vector<int> turning_links(const Outline& outline, bool only_wheels) {
   return links;
 }
 
-std::vector<int> wheels_by_name(const Outline& outline, const Diagnostic& diagnostic) {
+std::vector<int> wheels_by_name(const Outline& outline, Diagnostic& diagnostic) {
   std::vector<int> wheels = turning_links(outline, true);
   if (wheels.size() == 4) return wheels;
   std::string found = "a robot needs four wheels; ";
@@ -238,7 +240,7 @@ std::vector<int> wheels_by_name(const Outline& outline, const Diagnostic& diagno
 
 /// Four links sorted by where they are.
 WheelLinks by_place(const Outline& outline, std::vector<int> wheels,
-                    const std::vector<Eigen::Isometry3d>& poses, const Diagnostic& diagnostic) {
+                    const std::vector<Eigen::Isometry3d>& poses, Diagnostic& diagnostic) {
   const auto y = [&](int link) { return poses[at(link)].translation().y(); };
   const auto x = [&](int link) { return poses[at(link)].translation().x(); };
   std::sort(wheels.begin(), wheels.end(), [&](int a, int b) { return y(a) > y(b); });
@@ -262,7 +264,7 @@ WheelLinks by_place(const Outline& outline, std::vector<int> wheels,
 
 /// Refuses names in another order than that of kHowToName.
 void check_places(const Outline& outline, const WheelLinks& wheels,
-                  const std::vector<Eigen::Isometry3d>& poses, const Diagnostic& diagnostic) {
+                  const std::vector<Eigen::Isometry3d>& poses, Diagnostic& diagnostic) {
   const auto place = [&](int link) -> Eigen::Vector3d { return poses[at(link)].translation(); };
   for (const std::size_t end : {0U, 1U}) {
     if (place(wheels[0][end]).y() > place(wheels[1][end]).y()) continue;
@@ -278,7 +280,7 @@ void check_places(const Outline& outline, const WheelLinks& wheels,
 
 }  // namespace
 
-int find_chassis(const Outline& outline, const UrdfOptions& options, const Diagnostic& diagnostic) {
+int find_chassis(const Outline& outline, const UrdfOptions& options, Diagnostic& diagnostic) {
   if (!options.chassis_link.empty()) {
     return named_link(outline, options.chassis_link, "chassis_link", diagnostic);
   }
@@ -297,7 +299,7 @@ int find_chassis(const Outline& outline, const UrdfOptions& options, const Diagn
 }
 
 WheelLinks find_wheels(const Outline& outline, const std::vector<Eigen::Isometry3d>& poses,
-                       const UrdfOptions& options, const Diagnostic& diagnostic) {
+                       const UrdfOptions& options, Diagnostic& diagnostic) {
   WheelLinks wheels{};
   const auto take = [&](const auto& names, const auto& find) {
     for (std::size_t i = 0; i < 4; ++i) wheels[i % 2][i / 2] = find(names[i]);
@@ -316,7 +318,7 @@ WheelLinks find_wheels(const Outline& outline, const std::vector<Eigen::Isometry
   return wheels;
 }
 
-int find_imu(const Outline& outline, const UrdfOptions& options, const Diagnostic& diagnostic) {
+int find_imu(const Outline& outline, const UrdfOptions& options, Diagnostic& diagnostic) {
   if (!options.imu_link.empty()) {
     return named_link(outline, options.imu_link, "imu_link", diagnostic);
   }

@@ -1,6 +1,8 @@
 // The URDF importer on files that are wrong: one clear line each.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <ostream>
 #include <string>
 
@@ -137,20 +139,26 @@ INSTANTIATE_TEST_SUITE_P(
               ":80: link 'Box': <mesh> 'scale' is '0.1 -0.2 0.3'; allowed: three positive finite "
               "numbers "
               "separated by spaces"},
-        Wrong{"NotANumberMass", "mass value=\"2\"", "mass value=\"nan\"",
-              ":11: link 'Body': <mass> 'value' is 'nan'; allowed: one positive finite number"},
-        Wrong{"InfiniteMass", "mass value=\"2\"", "mass value=\"inf\"",
-              ":11: link 'Body': <mass> 'value' is 'inf'; allowed: one positive finite number"},
+        Wrong{
+            "NotANumberMass", "mass value=\"2\"", "mass value=\"nan\"",
+            ":11: link 'Body': <mass> 'value' is 'nan'; allowed: one finite, not negative number"},
+        Wrong{
+            "InfiniteMass", "mass value=\"2\"", "mass value=\"inf\"",
+            ":11: link 'Body': <mass> 'value' is 'inf'; allowed: one finite, not negative number"},
         Wrong{"OverflowingMass", "mass value=\"2\"", "mass value=\"1e999\"",
-              ":11: link 'Body': <mass> 'value' is '1e999'; allowed: one positive finite number"},
-        Wrong{"ZeroMass", "mass value=\"2\"", "mass value=\"0\"",
-              ":11: link 'Body': <mass> 'value' is '0'; allowed: one positive finite number"},
+              ":11: link 'Body': <mass> 'value' is '1e999'; allowed: one finite, not negative "
+              "number"},
+        Wrong{
+            "ZeroMass", "mass value=\"0.5\"", "mass value=\"0\"",
+            ":17: link 'fl_Wheel': needs an <inertial> with a mass, here or on a link fixed to it: "
+            "it moves on its own"},
         Wrong{"NegativeMass", "mass value=\"2\"", "mass value=\"-2\"",
-              ":11: link 'Body': <mass> 'value' is '-2'; allowed: one positive finite number"},
+              ":11: link 'Body': <mass> 'value' is '-2'; allowed: one finite, not negative number"},
         Wrong{"MassWithUnit", "mass value=\"2\"", "mass value=\"%s%n kg\"",
-              ":11: link 'Body': <mass> 'value' is '%s%n kg'; allowed: one positive finite number"},
+              ":11: link 'Body': <mass> 'value' is '%s%n kg'; allowed: one finite, not negative "
+              "number"},
         Wrong{"MassWithSpace", "mass value=\"2\"", "mass value=\"2 \"",
-              ":11: link 'Body': <mass> 'value' is '2 '; allowed: one positive finite number"},
+              ":11: link 'Body': <mass> 'value' is '2 '; allowed: one finite, not negative number"},
         Wrong{"NoMass", "<mass value=\"2\"/>", "", ":11: link 'Body': <inertial> needs <mass>"},
         Wrong{"NoInertia", kBodyInertia, "", ":11: link 'Body': <inertial> needs <inertia>"},
         Wrong{"NotANumberInertia", "ixx=\"0.03\"", "ixx=\"NaN\"",
@@ -192,6 +200,54 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"NamelessMesh", "filename=\"unit_cube.obj\"", "",
               ":80: link 'Box': <mesh> needs 'filename'"}),
     [](const auto& test) { return test.param.name; });
+
+TEST(WrongFile, EveryFaultIsNamedAtOnceInTheOrderOfLines) {
+  std::string text = small_with("mass value=\"2\"", "mass value=\"two\"");
+  const auto change = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  change("<axis xyz=\"0 1 0\"/>", "<axis/>");
+  change("<child link=\"Box\"/>", "<child link=\"box\"/>");
+  const std::string file = written_file();
+  EXPECT_EQ(error_of(text),
+            file +
+                ":11: link 'Body': <mass> 'value' is 'two'; allowed: one finite, not negative "
+                "number\n" +
+                file + ":28: joint 'fl_Wheel_joint': <axis> needs 'xyz'\n" + file +
+                ":83: joint 'Box_joint': child link 'box' does not exist");
+
+  // Faults that show only when the values are read.
+  text = small_with("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>");
+  change("upper=\"2\"", "upper=\"-2\"");
+  change("ixx=\"0.03\"", "ixx=\"0\"");
+  change("filename=\"unit_cube.obj\"", "filename=\"gone.obj\"");
+  const std::string error = error_of(text);
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 3) << error;
+  for (const char* part : {":11: link 'Body': <inertia> is not pos", ":28: joint 'fl_Wheel_joint'",
+                           ":29: joint 'fl_Wheel_joint': <limit> lower", "gone.obj"}) {
+    EXPECT_NE(error.find(part), std::string::npos) << part << "\n" << error;
+  }
+}
+
+TEST(WrongFile, AThousandFaultsAreCounted) {
+  std::string text = "<robot name=\"r\">";
+  for (int i = 0; i < 1000; ++i) text += "<link/>";
+  const std::string error = error_of(text + "</robot>");
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 20);
+  EXPECT_NE(error.find(written_file() + ": and 980 more"), std::string::npos) << error;
+}
+
+TEST(WrongFile, AMissingPackageIsNamedWithTheFoldersSearched) {
+  const std::string folder = std::filesystem::path(written_file()).parent_path().string();
+  const std::string error = error_of(
+      small_with("filename=\"unit_cube.obj\"", "filename=\"package://bot/meshes/base.stl\""));
+  EXPECT_TRUE(error.starts_with(written_file() +
+                                ":73: link 'Box': mesh of package 'bot' is not "
+                                "found: neither meshes/base.stl nor "
+                                "bot/meshes/base.stl is in " +
+                                folder + ", "))
+      << error;
+}
 
 TEST(WrongFile, ExampleOfTheThesisHasNoWheels) {
   EXPECT_EQ(error_of_file("tests/data/urdf/figure_5_4.urdf"),

@@ -159,6 +159,22 @@ TEST(Urdf, AxisBecomesUnitLengthInTheFrameOfBody) {
   EXPECT_EQ(box_joint("").axis, Eigen::Vector3d::UnitX());
 }
 
+// SolidWorks writes both for a mere place, such as a sensor's.
+TEST(Urdf, AFixedLinkMayHaveAZeroAxisAndNoMass) {
+  const std::string zero =
+      "<link name=\"sonar\"><inertial><mass value=\"0\"/><inertia ixx=\"0\" ixy=\"0\" ixz=\"0\" "
+      "iyy=\"0\" iyz=\"0\" izz=\"0\"/></inertial></link><joint name=\"sonar_joint\" "
+      "type=\"fixed\"><parent link=\"Body\"/><child link=\"sonar\"/><axis xyz=\"0 0 0\"/></joint>";
+  const std::string file = write(small_with("</robot>", zero + "</robot>"));
+  const Assembly robot = import_urdf(file);
+  EXPECT_EQ(body(robot, "sonar").inertia.mass, 0.0);
+  EXPECT_EQ(joint(robot, "sonar_joint").kind, AssemblyJoint::Kind::Fixed);
+  EXPECT_DOUBLE_EQ(composed_inertia(robot, rigid_group(robot, 1)).mass, 3.0);
+  UrdfOptions options;
+  options.joint_angles_rad["sonar_joint"] = 0.0;
+  EXPECT_NE(error_of_file(file, options).find("has no <axis> to turn it about"), std::string::npos);
+}
+
 TEST(Urdf, RigidGroupsFollowFixedJointsBothWays) {
   const Assembly robot = import_urdf(kSmall);
   const std::vector<int> expected = {0, 1, 6};  // base, Body, Box
