@@ -226,7 +226,7 @@ RobotLogCounts read_robot_log(const std::string& log,
   LineKind kind{};
   LoggedFrame logged;
   while (reader.next(kind, logged)) {
-    if (kind == LineKind::kUnreadable) ++counts.unreadable_lines;
+    if (kind == LineKind::kUnreadable || kind == LineKind::kUntimed) ++counts.unreadable_lines;
     if (kind != LineKind::kFrame) continue;
     LinkFrame frame;
     frame.time_us = logged.time_us;

@@ -3,10 +3,12 @@
 
 #include <bit>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 
 namespace screed {
 
@@ -19,6 +21,8 @@ CandumpWriter::CandumpWriter(const std::string& path, const std::string& link)
       interface_(std::filesystem::path(link).filename()),
       file_(path, std::ios::app | std::ios::binary) {
   if (!file_) throw InputError(path + ": cannot be written");
+  std::ifstream before(path, std::ios::ate | std::ios::binary);
+  if (before.tellg() > 0 && before.seekg(-1, std::ios::end).get() != '\n') file_ << '\n';
 }
 
 void CandumpWriter::add(uint64_t time_us, const CanFrame& frame) {
@@ -93,18 +97,47 @@ bool CandumpReader::next(LineKind& kind, LoggedFrame& frame) {
 
 static_assert(std::endian::native == std::endian::little, "bits are taken as they stand in memory");
 
+uint64_t LogClock::add(uint64_t time_us, uint64_t line) {
+  const uint64_t latest_us = latest_us_.value_or(time_us);
+  const bool back = time_us < latest_us;
+  const uint64_t step_us = back ? latest_us - time_us : time_us - latest_us;
+  if (back && step_us < kLeastStepBack_us) return 0;
+  latest_us_ = time_us;
+  if (!back && step_us <= kLongestSilence_us) {
+    elapsed_us_ += step_us;
+    return step_us;
+  }
+  if (++steps_ == 1) {
+    first_line_ = line;
+    first_step_s_ = static_cast<double>(step_us) * (back ? -1e-6 : 1e-6);
+  }
+  return 0;
+}
+
+std::string LogClock::text() const {
+  if (steps_ == 0) return "";
+  const bool back = first_step_s_ < 0.0;
+  std::string text = filled("the clock of the log steps {} by {:.0f} s at line {}",
+                            back ? "back" : "ahead", std::abs(first_step_s_), first_line_);
+  if (!back) text += ", or nothing was recorded for so long";
+  if (steps_ > 1) text += " (and " + std::to_string(steps_ - 1) + " more such steps)";
+  return text;
+}
+
 std::string DecodeStatistics::text() const {
-  std::string text = std::to_string(messages) + " messages of " + std::to_string(lines) + " lines";
+  std::string text = counted(messages, "message") + " of " + counted(lines, "line");
   const auto add = [&](uint64_t count, const std::string& what) {
     if (count > 0) text += ", " + std::to_string(count) + " " + what;
   };
   add(unreadable_lines,
       "unreadable (the first is line " + std::to_string(first_unreadable_line) + ")");
+  add(untimed, "without a time (candump -L writes it)");
   add(wrong_sizes, "of a wrong size");
   add(wrong_crcs, "with a wrong CRC");
   add(unknown_ids, "with ids of others");
   add(other_frames, "remote, error, FD or 29-bit frames");
   add(missing, "messages missing by their counters");
+  if (const std::string steps = clock.text(); !steps.empty()) text.append("; ").append(steps);
   return text;
 }
 
@@ -129,6 +162,8 @@ bool LogDecoder::next(DecodedFrame& decoded) {
     if (kind != LineKind::kFrame) {
       if (kind == LineKind::kOtherFrame) {
         ++statistics_.other_frames;
+      } else if (kind == LineKind::kUntimed) {
+        ++statistics_.untimed;
       } else if (++statistics_.unreadable_lines == 1) {
         statistics_.first_unreadable_line = reader_.line_number();
       }
@@ -150,6 +185,8 @@ bool LogDecoder::next(DecodedFrame& decoded) {
     }
     ++statistics_.messages;
     decoded.time_us = logged.time_us;
+    statistics_.clock.add(logged.time_us, reader_.line_number());
+    decoded.elapsed_us = statistics_.clock.elapsed_us();
     decoded.message = find_message(logged.frame.id);
     decoded.node = node_of(logged.frame.id);
     std::memcpy(&decoded.bits, logged.frame.data, sizeof decoded.bits);

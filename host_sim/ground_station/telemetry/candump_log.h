@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace screed {
 class CandumpWriter {
  public:
   /// link: the port or interface that frames come from, in the log by its last name: "ttyUSB0".
+  /// A last line that was cut, by a power failure say, stays what it is: a new one begins.
   /// Throws InputError when the file cannot be written.
   CandumpWriter(const std::string& path, const std::string& link);
 
@@ -70,9 +72,35 @@ class CandumpReader {
 
 // A log of CAN frames as messages: what can be read, and counts of what cannot.
 
+/// Time since the first message of a log, whose clock may be set while it is written (by NTP, by a
+/// start without a battery-backed clock): no time passes where it steps.
+class LogClock {
+ public:
+  /// A step back by less is two interfaces' frames out of order; the latest time stands.
+  static constexpr uint64_t kLeastStepBack_us = 1'000'000;
+  /// Robots are never silent for longer: a clock that was set ahead, or a recording that paused.
+  static constexpr uint64_t kLongestSilence_us = 60'000'000;
+
+  /// The next time that the log says, and the number of its line. Returns what passed since the one
+  /// before it.
+  uint64_t add(uint64_t time_us, uint64_t line);
+
+  [[nodiscard]] uint64_t elapsed_us() const { return elapsed_us_; }
+  /// One line for people about its steps; empty without any.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  std::optional<uint64_t> latest_us_;
+  uint64_t elapsed_us_ = 0;
+  uint64_t steps_ = 0;
+  uint64_t first_line_ = 0;
+  double first_step_s_ = 0.0;
+};
+
 /// One message of a log.
 struct DecodedFrame {
-  uint64_t time_us = 0;
+  uint64_t time_us = 0;     ///< as the log says
+  uint64_t elapsed_us = 0;  ///< as LogClock says
   const MessageInfo* message = nullptr;
   uint8_t node = 0;   ///< the robot; 0: the ground
   uint64_t bits = 0;  ///< the data, for SignalInfo::raw()
@@ -84,14 +112,21 @@ struct DecodeStatistics {
   uint64_t messages = 0;  ///< decoded
   uint64_t unreadable_lines = 0;
   uint64_t first_unreadable_line = 0;  ///< its number; 0: none
+  uint64_t untimed = 0;                ///< frames without a time
   uint64_t other_frames = 0;           ///< remote, error, FD, 29-bit ids
   uint64_t unknown_ids = 0;
   uint64_t wrong_sizes = 0;
   uint64_t wrong_crcs = 0;
   uint64_t missing = 0;  ///< messages that the alive counters say were sent and are not in the log
 
+  LogClock clock;
+
   /// Lines and frames that should be messages and are not.
-  [[nodiscard]] uint64_t damaged() const { return unreadable_lines + wrong_sizes + wrong_crcs; }
+  [[nodiscard]] uint64_t damaged() const {
+    return unreadable_lines + untimed + wrong_sizes + wrong_crcs;
+  }
+  /// Whether text() says more than how many messages there are.
+  [[nodiscard]] bool is_odd() const { return damaged() > 0 || !clock.text().empty(); }
   /// One line for people.
   [[nodiscard]] std::string text() const;
 };

@@ -18,6 +18,7 @@
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/robot_history.h"
+#include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/ground_station/telemetry/track_slip.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/run_setup.h"
@@ -246,13 +247,10 @@ double chassis_height_m(const SessionInfo& info) {
 void write_log_sessions(const fs::path& log, const fs::path& folder, const std::string& board) {
   const BoardConstants& constants = board_constants_of(board);
   std::map<RobotKey, RobotTrace> robots;
-  std::optional<std::uint64_t> last_us;
+  LogClock clock;
   std::uint64_t now_us = 0;
   read_robot_log(log.string(), [&](const RobotLogFrame& it) {
-    const std::uint64_t time_us = it.frame.time_us;
-    if (last_us.has_value() && time_us > *last_us)
-      now_us += std::min(time_us - *last_us, kLongestSilence_us);
-    last_us = time_us;
+    now_us += std::min(clock.add(it.frame.time_us, 0), kLongestSilence_us);
     robots.try_emplace(it.key, constants).first->second.add(it, now_us);
   });
   const HeightMap ground = ground_below(robots);

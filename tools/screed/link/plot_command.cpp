@@ -43,11 +43,8 @@ PlotData read_log(const PlotOptions& options, std::ostream& err) {
   data.by_robot.resize(data.signals.size());
   LogDecoder decoder(options.log);
   DecodedFrame frame;
-  std::optional<uint64_t> begin_us;
   while (decoder.next(frame)) {
-    if (!begin_us.has_value()) begin_us = frame.time_us;
-    const double time_s =
-        (static_cast<double>(frame.time_us) - static_cast<double>(*begin_us)) / 1e6;
+    const double time_s = static_cast<double>(frame.elapsed_us) / 1e6;
     if (time_s < options.from_s || time_s > options.to_s.value_or(time_s)) continue;
     if (options.robot.has_value() && *options.robot != frame.node) continue;
     data.time_s.add(time_s);
@@ -69,7 +66,7 @@ PlotData read_log(const PlotOptions& options, std::ostream& err) {
   if (data.robots.empty()) {
     throw InputError(options.log + ": holds none of these signals in this time; " + statistics);
   }
-  if (decoder.statistics().damaged() > 0) err << options.log << ": " << statistics << "\n";
+  if (decoder.statistics().is_odd()) err << options.log << ": " << statistics << "\n";
   return data;
 }
 

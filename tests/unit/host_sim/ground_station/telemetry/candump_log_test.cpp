@@ -60,10 +60,31 @@ TEST(CandumpLog, TellsFramesOthersAndTheUnreadable) {
       {"(1436509052.249713) vcan0 044#R8X", LineKind::kUnreadable},
       {"(1436509052.249713) 044#2A", LineKind::kUnreadable},
       {"(1436509052.249713)  044#2A", LineKind::kUnreadable},
+      {"(1436509052.249713)  can0 044#2A", LineKind::kFrame},  // beside slcan0
+      {"(1436509052.249713456) can0 044#2A", LineKind::kFrame},
+      {"(2015-07-10 06:17:32.249713) can0 044#2A", LineKind::kFrame},
+      {"(2015-13-10 06:17:32.249713) can0 044#2A", LineKind::kUnreadable},
+      {"(2015-02-29 06:17:32.249713) can0 044#2A", LineKind::kUnreadable},
+      {"(2015-07-10 24:17:32.249713) can0 044#2A", LineKind::kUnreadable},
+      {"(2015-07-10T06:17:32.249713) can0 044#2A", LineKind::kUnreadable},
+      {"(1436509052.2497134) can0 044#2A", LineKind::kUnreadable},
+      {"(1436509052.249713)can0 044#2A", LineKind::kUnreadable},
+      {" (1436509052.249713)  vcan0  044   [1]  2A", LineKind::kFrame},
+      {" (1436509052.249713)  vcan0  044   [1]  2A  '*'", LineKind::kFrame},
+      {" (1436509052.249713)  vcan0  RX B -  044   [1]  2A", LineKind::kFrame},
+      {" (1436509052.249713)  vcan0  044   [0] ", LineKind::kFrame},
+      {" (1436509052.249713)  vcan0  044   [0]  remote request", LineKind::kOtherFrame},
+      {" (1436509052.249713)  vcan0  044  [12]  00 11 22 33", LineKind::kOtherFrame},
+      {" (1436509052.249713)  vcan0  12345678   [1]  2A", LineKind::kOtherFrame},
+      {" (1436509052.249713)  vcan0  044   [2]  2A", LineKind::kUnreadable},
+      {" (1436509052.249713)  vcan0  044   [1]  2A 36", LineKind::kUnreadable},
+      {" (1436509052.249713)  vcan0  044   [1]  2G", LineKind::kUnreadable},
+      {" (1436509052.249713)  vcan0  044   2A", LineKind::kUnreadable},
+      {"vcan0 044#2A", LineKind::kUnreadable},
       {"(1436509052.2497) vcan0 044#2A", LineKind::kUnreadable},
       {"(1436509052) vcan0 044#2A", LineKind::kUnreadable},
       {"(9999999999999.000000) vcan0 044#2A", LineKind::kUnreadable},
-      {" vcan0  044   [1]  2A", LineKind::kUnreadable},  // candump without -L
+      {" vcan0  044   [1]  2A", LineKind::kUntimed},  // candump without -L and -t
       {"t2101AA", LineKind::kUnreadable},
       {"", LineKind::kUnreadable},
   };
@@ -71,6 +92,61 @@ TEST(CandumpLog, TellsFramesOthersAndTheUnreadable) {
     LoggedFrame frame;
     EXPECT_EQ(parse_candump_line(one.line, frame), one.kind) << one.line;
   }
+}
+
+TEST(CandumpLog, TimesAndDataAreThoseOfTheLogFormatHoweverTheyAreWritten) {
+  for (const char* line :
+       {"(1436509052.249713) can0 044#2A366C", "(1436509052.249713999)   can0 044#2A366C",
+        "(2015-07-10 06:17:32.249713) can0 044#2A366C",  // date -ud @1436509052
+        " (1436509052.249713)  can0  044   [3]  2A 36 6C",
+        " (2015-07-10 06:17:32.249713)  can0  TX - -  044   [3]  2A 36 6C  '*6l'"}) {
+    LoggedFrame logged;
+    ASSERT_EQ(parse_candump_line(line, logged), LineKind::kFrame) << line;
+    EXPECT_EQ(logged.time_us, 1436509052249713U) << line;
+    EXPECT_EQ(logged.frame.id, 0x044) << line;
+    ASSERT_EQ(logged.frame.size, 3) << line;
+    const uint8_t expected[8] = {0x2A, 0x36, 0x6C};
+    EXPECT_EQ(std::memcmp(logged.frame.data, expected, 8), 0) << line;
+  }
+}
+
+TEST(CandumpLog, AWriterBeginsANewLineAfterACutOne) {
+  const TempFolder folder;
+  const std::string path = (folder.path() / "drive.log").string();
+  const char* const cases[][2] = {{"(1.000000) a 044#2A\n", "(1.000000) a 044#2A\n"},
+                                  {"(1.000000) a 044#2", "(1.000000) a 044#2\n"},
+                                  {"", ""}};
+  for (const auto& [before, kept] : cases) {
+    std::ofstream(path, std::ios::binary) << before;
+    CandumpWriter writer(path, "/dev/ttyUSB0");
+    writer.add(2'000'000, {});
+    EXPECT_EQ(read_text(path), std::string(kept) + "(0000000002.000000) ttyUSB0 000#\n");
+  }
+}
+
+TEST(CandumpLog, AClockThatIsSetHidesNoTimeAndIsToldOnce) {
+  LogClock clock;
+  EXPECT_EQ(clock.add(5'000'000, 1), 0U);
+  EXPECT_EQ(clock.add(5'200'000, 2), 200'000U);
+  EXPECT_EQ(clock.add(5'100'000, 3), 0U) << "two interfaces out of order";
+  EXPECT_EQ(clock.add(5'300'000, 4), 100'000U);
+  EXPECT_EQ(clock.text(), "");
+  EXPECT_EQ(clock.add(4'300'000, 5), 0U);
+  EXPECT_EQ(clock.add(4'400'000, 6), 100'000U);
+  EXPECT_EQ(clock.text(), "the clock of the log steps back by 1 s at line 5");
+  EXPECT_EQ(clock.add(1'004'400'000, 7), 0U);
+  EXPECT_EQ(clock.add(1'004'500'000, 8), 100'000U);
+  EXPECT_EQ(clock.elapsed_us(), 500'000U);
+  EXPECT_EQ(clock.text(),
+            "the clock of the log steps back by 1 s at line 5 (and 1 more such steps)");
+  LogClock ahead;
+  ahead.add(0, 1);
+  ahead.add(60'000'000, 2);
+  EXPECT_EQ(ahead.elapsed_us(), 60'000'000U) << "a silence";
+  ahead.add(1'060'000'000, 3);
+  EXPECT_EQ(ahead.text(),
+            "the clock of the log steps ahead by 1000 s at line 3, or nothing was "
+            "recorded for so long");
 }
 
 class CandumpReading : public ::testing::Test {

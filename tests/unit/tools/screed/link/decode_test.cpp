@@ -123,7 +123,11 @@ TEST_F(Decode, TablesHaveUnitsAndExactNumbers) {
   EXPECT_NE(
       table("heartbeat").find("\n0.000005,1,running,lost,1,0,0,0,0,0,0,0,0,0,0,0,1,0,0,0,0,0\n"),
       std::string::npos);
-  EXPECT_EQ(err_.str(), scratch_.path().string() + "/radio.log: 4 messages of 4 lines\n");
+  EXPECT_EQ(err_.str(),
+            scratch_.path().string() +
+                "/radio.log: 4 messages of 4 lines; the clock of the log steps ahead by "
+                "1699999988 s at line 2, or nothing was recorded for so long (and 1 "
+                "more such steps)\n");
   EXPECT_NE(out_.str().find("attitude.csv\n"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(scratch_.path() / "radio_csv" / "power.csv"))
       << "no table without a message";
@@ -333,6 +337,31 @@ TEST_F(Decode, PlotsSignalsOfEachRobot) {
   EXPECT_EQ(err_.str(), "");
   options.signals = {"power.battery"};
   EXPECT_THROW(plot_chart(options, err_), InputError) << "not in the log";
+}
+
+TEST_F(Decode, PlotsShowAllOfALogWhoseClockIsSet) {
+  PlotOptions options;
+  options.log = log(attitude_line(2000, 100, 0) + attitude_line(2001, 200, 1) +
+                    attitude_line(1001, 300, 2) + attitude_line(1001.5, 400, 3));
+  options.signals = {"attitude.pitch"};
+  const StackedChart chart = plot_chart(options, err_);
+  const std::vector<ChartPoint>& points = chart.panels[0].series[0].points;
+  ASSERT_EQ(points.size(), 4U);
+  EXPECT_DOUBLE_EQ(points[2].x, 1.0);
+  EXPECT_DOUBLE_EQ(points[3].x, 1.5);
+  EXPECT_NE(err_.str().find("the clock of the log steps back by 1000 s at line 3\n"),
+            std::string::npos)
+      << err_.str();
+}
+
+TEST_F(Decode, FramesWithoutATimeAreNamed) {
+  std::string error = "no error";
+  try {
+    csv("  can0  210   [2]  2A 36\n");
+  } catch (const InputError& it) {
+    error = it.what();
+  }
+  EXPECT_NE(error.find("1 without a time (candump -L writes it)"), std::string::npos) << error;
 }
 
 std::string heartbeat_line(double time_s, uint8_t state, uint16_t faults, uint8_t counter) {
