@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "host_sim/campaign/campaign_values.h"
+#include "host_sim/core/csv_file.h"
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/ground_station/telemetry/schema.h"
-#include "host_sim/run/experiment/csv_file.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 
 namespace screed {
@@ -159,6 +159,8 @@ void check_entry(const Benchmark& benchmark, const fs::path& file,
 
 [[noreturn]] void refuse_level(const std::string& factor, const std::string& level,
                                const std::vector<std::string>& known) {
+  if (factor == kEntryFactor && fs::path(level).has_extension())
+    throw InputError(level + ": no such file");
   throw InputError("unknown " + factor + " '" + level + "'; known are " + name_list(known) +
                    (factor == kEntryFactor ? ", or an experiment file with its algorithm" : ""));
 }

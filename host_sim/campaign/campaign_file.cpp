@@ -8,10 +8,10 @@
 #include <system_error>
 
 #include "host_sim/campaign/campaign_values.h"
+#include "host_sim/core/csv_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/ini_file.h"
 #include "host_sim/core/name_list.h"
-#include "host_sim/run/experiment/csv_file.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 
 namespace screed {

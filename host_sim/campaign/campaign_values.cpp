@@ -8,10 +8,10 @@
 #include <numeric>
 #include <set>
 
+#include "host_sim/core/csv_file.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
-#include "host_sim/run/experiment/csv_file.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 
 namespace screed {

@@ -5,31 +5,16 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <numbers>
 #include <numeric>
 #include <tuple>
 
+#include "host_sim/core/csv_file.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 
 namespace screed {
 namespace {
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      fields.emplace_back();
-    } else if (c != '\r') {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
 
 /// A row by the names of its columns.
 class Row {
@@ -109,23 +94,21 @@ MeasuredPlate plate_of(const Row& row) {
 }  // namespace
 
 SoilMeasurements read_soil_measurements(const std::string& file, const std::string& prefix) {
-  std::ifstream in(file);
-  std::string line;
-  if (!in || !std::getline(in, line)) throw InputError(file + ": cannot be read");
-  const std::vector<std::string> names = split(line);
+  CsvReader reader(file);
+  CsvLine line;
+  if (!reader.next(line)) throw InputError(file + ": is empty");
+  const std::vector<std::string> names = line.cells;
   const auto has = [&](const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
   const bool wheels = has("wheel_radius_m");
   if (!wheels && !has("plate_width_m")) {
-    throw InputError(file +
-                     ":1: neither a column wheel_radius_m (wheels) nor plate_width_m (plates)");
+    throw InputError(file + ":" + std::to_string(line.line) +
+                     ": neither a column wheel_radius_m (wheels) nor plate_width_m (plates)");
   }
   SoilMeasurements all;
-  for (int number = 2; std::getline(in, line); ++number) {
-    if (line.empty() || line == "\r") continue;
-    const std::vector<std::string> fields = split(line);
-    const Row row(file, number, names, fields);
+  while (reader.next(line)) {
+    const Row row(file, line.line, names, line.cells);
     if (!row.text("case").starts_with(prefix)) continue;
     if (wheels) {
       all.wheels.push_back(wheel_of(row));

@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "host_sim/core/csv_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/run/experiment/csv_file.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 
 namespace screed {

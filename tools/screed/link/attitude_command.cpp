@@ -7,13 +7,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <iostream>
 #include <numbers>
 #include <optional>
 #include <string_view>
 
 #include "firmware/estimation/attitude.h"
+#include "host_sim/core/constants.h"
+#include "host_sim/core/csv_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/figures.h"
 #include "tools/screed/cli/command.h"
@@ -24,6 +25,8 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr long kTickMs = 10;
+// A tenth of gravity: nothing on Earth is moved so that it feels less for a whole recording.
+constexpr double kLeastMeanAcceleration = 410.0;
 
 /// A rotation on the host: w, x, y, z, unit length.
 using Rotation = std::array<double, 4>;
@@ -34,25 +37,21 @@ struct Row {
   bool moving;
 };
 
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(line.substr(0, comma));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
+/// What a count of gyroscope, accelerometer and magnetometer is worth in the units of a recording.
+using CountSizes = std::array<double, 3>;
+constexpr CountSizes kInCounts = {1.0, 1.0, 1.0};
+// 70 mdps in rad/s, 0.244 mg in m/s2, 0.160 mG in T (data sheets of L3GD20H and LSM303D).
+constexpr CountSizes kInSi = {0.07 / kDegrees, 0.244e-3 * kGravity_m_per_s2, 0.160e-7};
 
 /// Reads one recording, line by line.
 class RecordingReader {
  public:
-  explicit RecordingReader(const std::string& file) : file_(file), in_(file) {
-    if (!in_) throw InputError(file + ": cannot be read");
-    while (next_line() && line_.starts_with('#')) {
+  RecordingReader(const std::string& file, bool si)
+      : file_(file), reader_(file), sizes_(si ? kInSi : kInCounts) {
+    if (!reader_.next(line_)) {
+      throw InputError(file + ": column names are missing (gx,gy,gz,ax,ay,az,mx,my,mz,qw,...)");
     }
-    if (!in_ || line_.empty()) fail("column names are missing (gx,gy,gz,ax,ay,az,mx,my,mz,qw,...)");
-    for (const std::string_view name : split(line_)) names_.emplace_back(name);
+    names_ = line_.cells;
     for (std::size_t i = 0; i < kNames.size(); ++i) column_[i] = required_column(kNames[i]);
     const auto time = std::find(names_.begin(), names_.end(), "t_ms");
     if (time != names_.end()) time_column_ = static_cast<std::size_t>(time - names_.begin());
@@ -60,13 +59,9 @@ class RecordingReader {
 
   /// The next row, or nothing at the end of the file.
   std::optional<Row> next() {
-    if (!next_line()) {
-      if (in_.bad()) fail("cannot be read");
-      return std::nullopt;
-    }
-    fields_ = split(line_);
-    if (fields_.size() != names_.size()) {
-      fail("has " + std::to_string(fields_.size()) + " fields, the line of names has " +
+    if (!reader_.next(line_)) return std::nullopt;
+    if (line_.cells.size() != names_.size()) {
+      fail("has " + std::to_string(line_.cells.size()) + " fields, the line of names has " +
            std::to_string(names_.size()));
     }
     check_time();
@@ -92,14 +87,7 @@ class RecordingReader {
   static constexpr std::size_t kMoving = 13;
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(file_ + ":" + std::to_string(line_number_) + ": " + what);
-  }
-
-  bool next_line() {
-    if (!std::getline(in_, line_)) return false;
-    ++line_number_;
-    if (!line_.empty() && line_.back() == '\r') line_.pop_back();
-    return true;
+    throw InputError(file_ + ":" + std::to_string(line_.line) + ": " + what);
   }
 
   std::size_t required_column(std::string_view name) const {
@@ -111,7 +99,7 @@ class RecordingReader {
     return static_cast<std::size_t>(found - names_.begin());
   }
 
-  std::string_view field(std::size_t index) const { return fields_[column_[index]]; }
+  std::string_view field(std::size_t index) const { return line_.cells[column_[index]]; }
 
   template <class Number>
   Number number(std::string_view text, std::string_view name) const {
@@ -124,10 +112,11 @@ class RecordingReader {
   }
 
   std::int16_t count(std::size_t index) const {
-    const auto value = number<long>(field(index), kNames[index]);
-    if (value < INT16_MIN || value > INT16_MAX) {
-      fail(std::string(kNames[index]) + " is " + std::to_string(value) +
-           ", allowed is -32768 to 32767");
+    const double size = sizes_[index / 3];
+    const double value = std::round(number<double>(field(index), kNames[index]) / size);
+    if (!(value >= INT16_MIN && value <= INT16_MAX)) {
+      fail(filled("{} is {}, allowed is {:g} to {:g}", kNames[index], field(index),
+                  INT16_MIN * size, INT16_MAX * size));
     }
     return static_cast<std::int16_t>(value);
   }
@@ -152,7 +141,7 @@ class RecordingReader {
 
   void check_time() {
     if (!time_column_) return;
-    const auto time = number<long>(fields_[*time_column_], "t_ms");
+    const auto time = number<long>(line_.cells[*time_column_], "t_ms");
     if (previous_time_ && time - *previous_time_ != kTickMs) {
       fail("t_ms goes from " + std::to_string(*previous_time_) + " to " + std::to_string(time) +
            ", the estimator needs steps of 10");
@@ -161,14 +150,13 @@ class RecordingReader {
   }
 
   std::string file_;
-  std::ifstream in_;
-  std::string line_;
-  long line_number_ = 0;
+  CsvReader reader_;
+  CsvLine line_;
+  CountSizes sizes_;
   std::vector<std::string> names_;
   std::array<std::size_t, kNames.size()> column_{};
   std::optional<std::size_t> time_column_;
   std::optional<long> previous_time_;
-  std::vector<std::string_view> fields_;
 };
 
 Rotation rotation_of(const Quaternion& q) {
@@ -231,21 +219,32 @@ void print_json(const std::vector<AttitudeScore>& scores, const AttitudeScore& m
 
 }  // namespace
 
-AttitudeScore score_attitude(const std::string& file) {
-  RecordingReader reader(file);
+AttitudeScore score_attitude(const std::string& file, bool si) {
+  RecordingReader reader(file, si);
   AttitudeEstimator estimator;
   AttitudeScore score;
   score.file = file;
   double inclination = 0.0;
   double heading = 0.0;
+  double acceleration = 0.0;
+  long rows = 0;
   while (const std::optional<Row> row = reader.next()) {
     estimator.update(row->sample);
+    const auto* const accel = row->sample.imu.accel();
+    acceleration += std::hypot(accel[0], accel[1], accel[2]);
+    ++rows;
     if (!row->moving || !row->reference) continue;
     const AttitudeError error =
         error_between(rotation_of(estimator.orientation()), *row->reference);
     inclination += error.inclination_deg * error.inclination_deg;
     heading += error.heading_deg * error.heading_deg;
     ++score.samples;
+  }
+  if (rows > 0 && acceleration / static_cast<double>(rows) < kLeastMeanAcceleration) {
+    throw InputError(
+        filled("{}: ax,ay,az are {:.1f} counts long on average, and 1 g is 4098 of them; {}", file,
+               acceleration / static_cast<double>(rows),
+               "for rad/s, m/s2 and T, as ROS writes them, say --units si"));
   }
   if (score.samples == 0) {
     throw InputError(file +
@@ -256,12 +255,12 @@ AttitudeScore score_attitude(const std::string& file) {
   return score;
 }
 
-int run_attitude(const std::vector<std::string>& files, bool json, std::ostream& out) {
+int run_attitude(const std::vector<std::string>& files, bool si, bool json, std::ostream& out) {
   std::vector<AttitudeScore> scores;
   AttitudeScore mean;
   mean.file = "mean";
   for (const std::string& file : files) {
-    scores.push_back(score_attitude(file));
+    scores.push_back(score_attitude(file, si));
     mean.rms_inclination_deg +=
         scores.back().rms_inclination_deg / static_cast<double>(files.size());
     mean.rms_heading_deg += scores.back().rms_heading_deg / static_cast<double>(files.size());
@@ -277,14 +276,22 @@ int run_attitude(const std::vector<std::string>& files, bool json, std::ostream&
 void register_attitude_command(Command& root, Program& program) {
   struct Options {
     std::vector<std::string> files;
+    std::string units = "counts";
     bool json = false;
   };
   auto [command, options] = add_subcommand<Options>(
       root, program, "attitude",
       "Run the attitude estimator over recordings with an optical reference and print its errors",
-      [](const Options& given) { return run_attitude(given.files, given.json, std::cout); });
+      [](const Options& given) {
+        return run_attitude(given.files, given.units == "si", given.json, std::cout);
+      });
   command.add_option("FILES", options.files, "CSV recordings (format: docs/attitude.md)")
       ->required();
+  command
+      .add_option("--units", options.units,
+                  "Units of the recordings: counts of the sensors, or rad/s, m/s2 and T")
+      ->one_of({"counts", "si"})
+      ->show_default();
   command.add_flag("--json", options.json, "Print JSON");
 }
 

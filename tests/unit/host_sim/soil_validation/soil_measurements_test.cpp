@@ -37,7 +37,11 @@ TEST(SoilMeasurementsTest, SayWhatIsWrongAndWhere) {
   EXPECT_EQ(message(head), file + ": no case begins with ''");
   EXPECT_EQ(message("a,b\n1,2\n"),
             file + ":1: neither a column wheel_radius_m (wheels) nor plate_width_m (plates)");
-  EXPECT_EQ(message(""), file + ": cannot be read");
+  EXPECT_EQ(message(""), file + ": is empty");
+  // As spreadsheets write it: a mark before UTF-8, blanks; and a comment.
+  EXPECT_EQ(message("\xEF\xBB\xBF" + head + "a, 0.1, 0.05, 20, 0.2, 0.01\r\n"), "none");
+  EXPECT_EQ(message("# of a test\n" + head + "a,0.1,0.05,20,1.2,0.01\n"),
+            file + ":3: slip is '1.2', a number from -1 to 0.99 is needed");
   EXPECT_EQ(read_soil_measurements(std::string(kDataFolder) + "/soil/single_wheel_ding2011.csv",
                                    "ding2011_lug10")
                 .wheels.size(),

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "commands.h"
 #include "host_sim/core/errors.h"
@@ -79,9 +81,57 @@ TEST_F(AttitudeCommand, ColumnsAreFoundByName) {
   EXPECT_NEAR(score_attitude(write(shuffled)).rms_inclination_deg, 0.0, 0.01);
 }
 
+TEST_F(AttitudeCommand, TakesWhatSpreadsheetsAndPandasWrite) {
+  const std::string marked = "\xEF\xBB\xBF" + kHeader;
+  EXPECT_EQ(score_attitude(write(marked + kRow)).samples, 1);
+  // The mark hides no column: the gap in t_ms is seen.
+  EXPECT_NE(error_of(marked + kRow + "90,0,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n").find("t_ms goes"),
+            std::string::npos);
+  const std::string blanks =
+      "gx, gy, gz, ax, ay, az, mx, my, mz, qw, qx, qy, qz, moving\n"
+      "0.0, -0.4, 0.4, 0.0, 0.0, 4098.0, 0.0, 999.6, 0.0, 1.0, 0.0, 0.0, 0.0, 1\n";
+  EXPECT_NEAR(score_attitude(write(blanks)).rms_inclination_deg, 0.0, 1e-9);
+}
+
+TEST_F(AttitudeCommand, UnitsOfRosGiveWhatCountsGive) {
+  // The excerpt in rad/s, m/s2 and T, by its own arithmetic.
+  std::ifstream in(kExcerpt);
+  std::ostringstream si;
+  si.precision(12);
+  std::vector<std::string> names;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with('#')) continue;
+    std::istringstream cells(line);
+    std::size_t column = 0;
+    for (std::string cell; std::getline(cells, cell, ','); ++column) {
+      if (column > 0) si << ',';
+      const bool is_head = !std::isdigit(static_cast<unsigned char>(line[0]));
+      if (is_head) names.push_back(cell);
+      const std::string& name = names[column];
+      const bool is_axis = name.size() == 2 && name[1] >= 'x' && name[1] <= 'z' && name[0] != 'q';
+      const double size = name[0] == 'g'   ? 0.07 * 3.14159265358979 / 180.0
+                          : name[0] == 'a' ? 0.244e-3 * 9.80665
+                                           : 16e-9;
+      if (is_head || !is_axis) {
+        si << cell;
+      } else {
+        si << std::stod(cell) * size;
+      }
+    }
+    if (line.ends_with(',')) si << ',';
+    si << '\n';
+  }
+  const AttitudeScore counts = score_attitude(kExcerpt);
+  const AttitudeScore same = score_attitude(write(si.str()), true);
+  EXPECT_EQ(same.samples, counts.samples);
+  EXPECT_DOUBLE_EQ(same.rms_inclination_deg, counts.rms_inclination_deg);
+  EXPECT_DOUBLE_EQ(same.rms_heading_deg, counts.rms_heading_deg);
+  EXPECT_NE(error_of(si.str()).find("--units si"), std::string::npos);
+}
+
 TEST_F(AttitudeCommand, TableHasFilesAndMean) {
   std::ostringstream out;
-  EXPECT_EQ(run_attitude({kExcerpt, kExcerpt}, false, out), 0);
+  EXPECT_EQ(run_attitude({kExcerpt, kExcerpt}, false, false, out), 0);
   const std::string table = out.str();
   EXPECT_NE(table.find(kExcerpt), std::string::npos);
   EXPECT_NE(table.find("\nmean"), std::string::npos);
@@ -90,7 +140,7 @@ TEST_F(AttitudeCommand, TableHasFilesAndMean) {
 TEST_F(AttitudeCommand, JsonMeanIsTheMeanOverFiles) {
   const std::string other = write(kHeader + kRow);
   std::ostringstream out;
-  EXPECT_EQ(run_attitude({kExcerpt, other}, true, out), 0);
+  EXPECT_EQ(run_attitude({kExcerpt, other}, false, true, out), 0);
   const Json result = Json::parse(out.str());
   ASSERT_EQ(result["files"].size(), 2U);
   EXPECT_EQ(result["files"][0]["file"], kExcerpt);
@@ -134,18 +184,20 @@ TEST_F(AttitudeCommand, WrongContentIsNamedWithItsLine) {
   };
   const std::string good = kHeader + kRow;
   const Case cases[] = {
-      {"", ":0: ", "column names"},
-      {"# only a comment\n", ":1: ", "column names"},
+      {"", ".csv: ", "column names"},
+      {"# only a comment\n", ".csv: ", "column names"},
       {"t_ms,gx,gy\n" + kRow, ":1: ", "column gz is missing"},
       {"gx," + kHeader + kRow, ":1: ", "column gx is there twice"},
       {good + "10,0,0,0,0,0,4098,0,1000,0,1,0,0,0\n", ":3: ", "has 14 fields"},
-      {good + "\n", ":3: ", "has 1 fields"},
+      {good + "x\n", ":3: ", "has 1 fields"},
       {good + "10,x,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n", ":3: ", "gx is 'x'"},
       {good + "10,,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n", ":3: ", "gx is ''"},
-      {good + "10,1.5,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n", ":3: ", "gx is '1.5'"},
+      {good + "10,1.5e,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n", ":3: ", "gx is '1.5e'"},
+      {good + "10,nan,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n", ":3: ", "gx is nan"},
+      {kHeader + "0,0.0049,0,0,0.09,0,9.81,0,155,0,1,0,0,0,1\n", ".csv: ", "--units si"},
       {good + "10,0,0,0,0,0,32768,0,1000,0,1,0,0,0,1\n", ":3: ", "az is 32768"},
       {good + "10,0,0,0,0,-32769,0,0,1000,0,1,0,0,0,1\n", ":3: ", "ay is -32769"},
-      {good + "10,0,0,0,0,0,99999999999999999999,0,1000,0,1,0,0,0,1\n", ":3: ", "az is '9999"},
+      {good + "10,0,0,0,0,0,99999999999999999999,0,1000,0,1,0,0,0,1\n", ":3: ", "az is 9999"},
       {good + "10,0,0,0,0,0,4098,0,1000,0,1,,0,0,1\n", ":3: ", "qx is ''"},
       {good + "10,0,0,0,0,0,4098,0,1000,0,nan,0,0,0,1\n", ":3: ", "length"},
       {good + "10,0,0,0,0,0,4098,0,1000,0,0.5,0,0,0,1\n", ":3: ", "length"},

@@ -1,10 +1,10 @@
 // CSV files.
-#include "host_sim/run/experiment/csv_file.h"
+#include "host_sim/core/csv_file.h"
 
 #include <algorithm>
-#include <fstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "host_sim/core/errors.h"
 
@@ -59,22 +59,31 @@ std::vector<std::string> split_csv_line(std::string_view text, const std::string
   }
 }
 
-std::vector<CsvLine> read_csv_file(const std::filesystem::path& path) {
+CsvReader::CsvReader(const std::filesystem::path& path) : path_(path.string()), file_(path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
-    throw InputError(path.string() + ": is a folder, not a table");
-  std::ifstream file(path);
-  if (!file) throw InputError(path.string() + ": no such table, or it cannot be read");
-  std::vector<CsvLine> lines;
-  std::string text;
-  for (int number = 1; std::getline(file, text); ++number) {
-    if (number == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
-    if (!text.empty() && text.back() == '\r') text.pop_back();
-    const std::string_view content = trimmed(text);
+    throw InputError(path_ + ": is a folder, not a table");
+  if (!file_) throw InputError(path_ + ": no such table, or it cannot be read");
+}
+
+bool CsvReader::next(CsvLine& line) {
+  while (std::getline(file_, text_)) {
+    if (++number_ == 1 && text_.starts_with(kByteOrderMark)) text_.erase(0, kByteOrderMark.size());
+    if (!text_.empty() && text_.back() == '\r') text_.pop_back();
+    const std::string_view content = trimmed(text_);
     if (content.empty() || content.front() == '#') continue;
-    lines.push_back(
-        {number, split_csv_line(content, path.string() + ":" + std::to_string(number))});
+    line.line = number_;
+    line.cells = split_csv_line(content, path_ + ":" + std::to_string(number_));
+    return true;
   }
+  if (file_.bad()) throw InputError(path_ + ": cannot be read");
+  return false;
+}
+
+std::vector<CsvLine> read_csv_file(const std::filesystem::path& path) {
+  CsvReader reader(path);
+  std::vector<CsvLine> lines;
+  for (CsvLine line; reader.next(line);) lines.push_back(std::move(line));
   return lines;
 }
 
