@@ -302,6 +302,7 @@ Json configuration_of(const SessionReader& session) {
 std::string hash_of(std::span<const SessionReader> sessions) {
   std::vector<std::string> hashes;
   for (const SessionReader& session : sessions) {
+    if (session.running()) return "none: the run goes on";
     if (!session.complete()) return "none: the run did not end";
     hashes.push_back(session.content_hash());
   }
@@ -354,6 +355,7 @@ std::string run_page(std::span<const SessionReader> sessions, const RunPageOptio
   facts["kind"] = "run";
   facts["title"] = options.name;
   facts["complete"] = session.complete();
+  facts["running"] = session.running();
   facts["tick_s"] = 1.0 / session.info().tick_rate_hz;
   facts["stops"] = stops;
   facts["identity"] = identity_of(sessions, options);

@@ -40,6 +40,7 @@ ReplayResult replay_session(const std::filesystem::path& session_file,
   ReplayResult result;
   result.arithmetic = info.arithmetic;
   result.complete = session.complete();
+  result.running = session.running();
   result.unchanged = !result.complete || !session.missing_columns().empty() ||
                      session.compute_content_hash() == session.content_hash();
 

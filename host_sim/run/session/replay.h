@@ -20,6 +20,7 @@ struct ReplayResult {
   std::string output_hash;  ///< hash of the replayed outputs, 32 hexadecimal digits
   bool complete =
       true;  ///< false when the recorded run was killed: only its saved part was replayed
+  bool running = false;  ///< it was still being recorded
   bool unchanged =
       true;  ///< false when the file's content no longer has the hash it was saved with
 };

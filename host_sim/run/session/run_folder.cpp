@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/run/session/session_turns.h"
 
 namespace screed {
 
@@ -50,6 +51,10 @@ std::vector<fs::path> session_files(const fs::path& run) {
     if (!is_taken(further)) return files;
     files.push_back(std::move(further));
   }
+}
+
+bool is_running(const fs::path& partial) {
+  return is_being_written(partial / "session.h5");
 }
 
 RunFolder::RunFolder(RunFolder&& other) noexcept
@@ -130,9 +135,12 @@ RunFolder RunFolder::at(const fs::path& out) {
   }
   folder.create_parents();
   if (!folder.create_partial()) {
-    throw InputError(folder.partial_.string() +
-                     ": left over from an unfinished run (interrupted, or still running); "
-                     "remove it or name another folder");
+    throw InputError(
+        folder.partial_.string() +
+        (is_running(folder.partial_)
+             ? ": a run is being recorded there; wait for its end or name another folder"
+             : ": left over from an unfinished run; remove it or name "
+               "another folder"));
   }
   return folder;
 }
@@ -150,7 +158,7 @@ RunFolder RunFolder::numbered(const fs::path& root, const std::string& experimen
     folder.final_ += '-' + digits;
     folder.partial_ = partial_of(folder.final_);
     if (is_taken(folder.partial_)) {
-      folder.leftovers_.push_back(folder.partial_);
+      if (!is_running(folder.partial_)) folder.leftovers_.push_back(folder.partial_);
       continue;
     }
     if (is_taken(folder.final_)) continue;

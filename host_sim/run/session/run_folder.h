@@ -23,6 +23,9 @@ std::filesystem::path folder_of_robot(const std::filesystem::path& folder, std::
 /// one whether it is there or not; of a run named by a session file that one.
 std::vector<std::filesystem::path> session_files(const std::filesystem::path& run);
 
+/// Whether the folder belongs to a run that is being recorded now.
+bool is_running(const std::filesystem::path& partial);
+
 /// While a run goes on its folder is `<name>.partial`. commit() gives it its name; without commit()
 /// the destructor removes it. A `.partial` of another run, interrupted or still going on, is never
 /// touched.
@@ -45,7 +48,7 @@ class RunFolder {
   const std::filesystem::path& path() const { return partial_; }
   /// Where the run will stand after commit().
   const std::filesystem::path& final_path() const { return final_; }
-  /// Folders of unfinished runs that numbered() passed over, for a note to the user.
+  /// Folders of interrupted runs that numbered() passed over, for a note to the user.
   const std::vector<std::filesystem::path>& leftovers() const { return leftovers_; }
 
   /// Renames the folder to final_path(). Throws RunError when that fails; the folder then stays as

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <mutex>
 #include <stdexcept>
 
 #include "firmware/parameters/parameters.h"
@@ -14,6 +15,7 @@
 #include "host_sim/core/record.h"
 #include "host_sim/run/session/height_series.h"
 #include "host_sim/run/session/session_layout.h"
+#include "host_sim/run/session/session_turns.h"
 
 namespace screed {
 namespace {
@@ -21,6 +23,7 @@ namespace {
 using h5::Hdf5Failure;
 
 constexpr std::uint64_t kBlockRows = 1024;
+constexpr const char* kUnreadable = "not a readable session";
 
 template <class Action>
 decltype(auto) or_input_error(const std::filesystem::path& path, Action&& action) {
@@ -31,18 +34,41 @@ decltype(auto) or_input_error(const std::filesystem::path& path, Action&& action
   }
 }
 
-h5::Handle open_file(const std::filesystem::path& path) {
+/// A session that is being written: a copy in memory of what is there so far.
+h5::Handle open_copy(const std::filesystem::path& path) {
+  SessionTurns turns(path, false);
+  std::vector<char> bytes;
+  {
+    const std::lock_guard<SessionTurns> turn(turns);
+    bytes = turns.bytes();
+  }
+  constexpr std::size_t kGrowth_bytes = 1U << 16U;  // never used: nothing is written
+  const h5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, kUnreadable);
+  h5::check(H5Pset_fapl_core(access.get(), kGrowth_bytes, false), kUnreadable);
+  h5::check(H5Pset_file_image(access.get(), bytes.data(), bytes.size()), kUnreadable);
+  // The library wants a name that no file has: nothing can lie below a file.
+  const std::filesystem::path name = path / "copy";
+  const hid_t id = bytes.empty() ? -1 : H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.get());
+  if (id < 0) throw Hdf5Failure("the run has only just begun and has saved nothing yet");
+  return {id, H5Fclose, ""};
+}
+
+h5::Handle open_file(const std::filesystem::path& path, bool& running) {
   h5::quiet();
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw Hdf5Failure("no such file");
   if (std::filesystem::is_directory(status)) throw Hdf5Failure("is a folder, not a session file");
+  running = is_being_written(path);
+  if (running) return open_copy(path);
   // Negative when the file cannot even be opened: the next call tells why.
   if (H5Fis_hdf5(path.c_str()) == 0) {
     throw Hdf5Failure("not a session: not an HDF5 file, or its beginning is damaged");
   }
-  const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  return {id, H5Fclose, "not a readable session"};
+  const h5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, kUnreadable);
+  // A lock of HDF5's would make a run fail that begins to write just now.
+  h5::check(H5Pset_file_locking(access.get(), false, true), kUnreadable);
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose, kUnreadable};
 }
 
 void check_format(hid_t file) {
@@ -254,7 +280,7 @@ class SessionReader::Impl {
  public:
   explicit Impl(std::filesystem::path path)
       : path_(std::move(path)),
-        file_(open_checked(path_)),
+        file_(open_checked(path_, running_)),
         info_(read_info(file_.get(), missing_parameters_)),
         frames_(file_.get(), layout::kFramesTable, true),
         samples_(file_.get(), layout::kSamplesTable, false),
@@ -279,6 +305,7 @@ class SessionReader::Impl {
   }
 
   const std::filesystem::path& path() const { return path_; }
+  bool running() const { return running_ && hash_.empty(); }
   const SessionInfo& info() const { return info_; }
   std::uint64_t frames() const { return rows_; }
   const std::string& hash() const { return hash_; }
@@ -346,8 +373,8 @@ class SessionReader::Impl {
   }
 
  private:
-  static h5::Handle open_checked(const std::filesystem::path& path) {
-    h5::Handle file = open_file(path);
+  static h5::Handle open_checked(const std::filesystem::path& path, bool& running) {
+    h5::Handle file = open_file(path, running);
     check_format(file.get());
     return file;
   }
@@ -368,6 +395,7 @@ class SessionReader::Impl {
   }
 
   std::filesystem::path path_;
+  bool running_ = false;
   h5::Handle file_;
   std::vector<std::string> missing_columns_;
   std::vector<std::string> missing_parameters_;
@@ -393,6 +421,10 @@ const SessionInfo& SessionReader::info() const {
 std::uint64_t SessionReader::frames() const {
   return impl_->frames();
 }
+bool SessionReader::running() const {
+  return impl_->running();
+}
+
 bool SessionReader::complete() const {
   return !impl_->hash().empty();
 }

@@ -34,6 +34,8 @@ class SessionReader {
   /// False for the file of a run that was killed: it holds the blocks written until then and no
   /// content hash.
   bool complete() const;
+  /// Not complete, and was being written when it was opened: this is what was there then.
+  bool running() const;
   /// As recorded; empty when the session is not complete.
   const std::string& content_hash() const;
   /// Frame columns that this program knows and the file has not: they read as NaN, or 0 for

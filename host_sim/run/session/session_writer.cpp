@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "host_sim/core/record.h"
 #include "host_sim/run/session/height_series.h"
 #include "host_sim/run/session/session_layout.h"
+#include "host_sim/run/session/session_turns.h"
 
 namespace screed {
 namespace {
@@ -131,11 +133,13 @@ class SessionWriter::Impl {
   Impl(std::filesystem::path path, const SessionInfo& info)
       : path_(std::move(path)),
         file_(create_file(path_)),
+        turns_(path_, true),
         terrain_(layout::create_group(file_.get(), layout::kTerrainGroup)),
         frames_(file_.get(), layout::kFramesTable),
         samples_(file_.get(), layout::kSamplesTable),
         outputs_(file_.get(), layout::kOutputsTable),
         hash_(info) {
+    const std::lock_guard<SessionTurns> turn(turns_);
     write_info(file_.get(), info);
     flush();
   }
@@ -144,6 +148,7 @@ class SessionWriter::Impl {
   std::uint64_t frames() const { return written_ + waiting_; }
 
   void record_heights(const HeightMapView& map) {
+    const std::lock_guard<SessionTurns> turn(turns_);
     if (frames() != 0 || heights_.has_value()) {
       throw std::logic_error("heights are recorded from the first tick on");
     }
@@ -162,6 +167,7 @@ class SessionWriter::Impl {
 
   void write_block() {
     if (waiting_ == 0) return;
+    const std::lock_guard<SessionTurns> turn(turns_);
     hash_.add_frames(frames_.bytes(waiting_));
     hash_.add_samples(samples_.bytes(waiting_));
     hash_.add_outputs(outputs_.bytes(waiting_));
@@ -176,6 +182,7 @@ class SessionWriter::Impl {
   }
 
   void append_leveling(const LevelingPoint& point) {
+    const std::lock_guard<SessionTurns> turn(turns_);
     constexpr std::size_t kBlockPoints = 64;
     if (!leveling_) leveling_.emplace(file_.get(), layout::kLevelingTable, kBlockPoints);
     std::memcpy(leveling_->row(0), &point, kLevelingBytes);  // our hosts are little endian
@@ -183,6 +190,7 @@ class SessionWriter::Impl {
   }
 
   void write_soil(const SoilParameters& soil) {
+    const std::lock_guard<SessionTurns> turn(turns_);
     const h5::Handle group = layout::create_group(file_.get(), layout::kSoilGroup);
     for (const SoilParameterInfo& parameter : kSoilParameters) {
       h5::write_attribute(group.get(), parameter.key, soil.*parameter.member);
@@ -195,6 +203,7 @@ class SessionWriter::Impl {
   }
 
   void write_terrain(const char* name, const HeightMapView& map) {
+    const std::lock_guard<SessionTurns> turn(turns_);
     const HeightMapGeometry& g = map.geometry;
     constexpr hsize_t kTile = 128;
     const std::array<hsize_t, 2> size{g.ny, g.nx};
@@ -214,6 +223,7 @@ class SessionWriter::Impl {
   }
 
   void write_particles(const char* name, const SphereSet& particles) {
+    const std::lock_guard<SessionTurns> turn(turns_);
     const h5::Handle group =
         h5::has_link(file_.get(), layout::kParticlesGroup)
             ? h5::Handle(H5Gopen2(file_.get(), layout::kParticlesGroup, H5P_DEFAULT), H5Gclose,
@@ -240,6 +250,7 @@ class SessionWriter::Impl {
 
   std::string finish() {
     write_block();
+    const std::lock_guard<SessionTurns> turn(turns_);
     if (heights_) {
       hash_.set_heights(heights_->hash());
       heights_->close();
@@ -261,6 +272,7 @@ class SessionWriter::Impl {
 
   std::filesystem::path path_;
   h5::Handle file_;
+  SessionTurns turns_;
   h5::Handle terrain_;
   GrowingTable frames_;
   GrowingTable samples_;

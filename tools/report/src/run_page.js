@@ -47,7 +47,8 @@ function figuresByRobot(robots, ends) {
 function header(page, facts) {
   page.append(element('h1', {}, facts.title));
   if (!facts.complete) page.append(
-    element('p', { class: 'warning' }, 'The recorded run did not end: this is what was written until then.'));
+    element('p', { class: 'warning' }, facts.running ? 'The run goes on: this is what was saved when this page was made.' :
+      'The recorded run did not end: this is what was written until then.'));
   const { robots } = facts;
   const ends = [['State at the end', 'state'], ['Faults at the end', 'faults']];
   const of = robots.length > 1 ? figuresByRobot(robots, ends)

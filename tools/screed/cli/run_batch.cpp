@@ -14,6 +14,7 @@
 #include "host_sim/core/figures.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/experiment/experiment_table.h"
+#include "host_sim/run/session/run_folder.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
@@ -45,8 +46,10 @@ bool is_recorded(const Experiment& experiment, const fs::path& root) {
   std::error_code error;
   if (const fs::path partial = run.string() + ".partial"; fs::exists(partial, error)) {
     throw InputError(partial.string() +
-                     ": left over from an unfinished run (interrupted, or still running); remove "
-                     "it, then --missing runs it again");
+                     (is_running(partial)
+                          ? ": this run is being recorded now; wait for its end"
+                          : ": left over from an unfinished run; remove it, then --missing "
+                            "runs it again"));
   }
   if (!fs::exists(run, error)) return false;
   if (!fs::exists(run / "session.h5", error))

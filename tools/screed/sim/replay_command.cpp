@@ -69,7 +69,8 @@ void print_text(const std::string& of, const ReplayResult& result) {
 void print_notes(const std::string& of, const ReplayResult& result) {
   if (!result.complete) {
     std::cerr << "note: " << of
-              << "the recorded run did not end; only its saved ticks were replayed\n";
+              << (result.running ? "the run goes on" : "the recorded run did not end")
+              << "; only its saved ticks were replayed\n";
   }
   if (result.arithmetic != arithmetic()) {
     std::cerr << "note: " << of << "the world was computed with arithmetic '" << result.arithmetic

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/run/session/session_writer.h"
 #include "tests/child_process.h"
 #include "tests/temp_folder.h"
 
@@ -150,6 +151,23 @@ TEST_F(RunFolderTest, NumbersAreTheLowestFreeOnes) {
   const RunFolder third = RunFolder::numbered(base_ / "out", "hill");
   EXPECT_EQ(third.final_path(), base_ / "out" / "hill-0004");
   EXPECT_EQ(RunFolder::numbered(base_ / "out", "pit").final_path(), base_ / "out" / "pit-0001");
+}
+
+TEST_F(RunFolderTest, ARunThatGoesOnIsNotLeftOver) {
+  fs::create_directories(base_ / "hill-0001.partial");
+  SessionInfo info;
+  const SessionWriter running(base_ / "hill-0001.partial" / "session.h5", info);
+  const RunFolder folder = RunFolder::numbered(base_, "hill");
+  EXPECT_EQ(folder.final_path(), base_ / "hill-0002");
+  EXPECT_TRUE(folder.leftovers().empty());
+  std::string error = "none";
+  try {
+    RunFolder::at(base_ / "hill-0001");
+  } catch (const InputError& it) {
+    error = it.what();
+  }
+  EXPECT_EQ(error, (base_ / "hill-0001.partial").string() +
+                       ": a run is being recorded there; wait for its end or name another folder");
 }
 
 TEST_F(RunFolderTest, NumbersPassOverLeftOversAndNameThem) {

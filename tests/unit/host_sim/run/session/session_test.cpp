@@ -1,4 +1,6 @@
 // Session files: what is written comes back, also through programs we did not write.
+#include <sys/wait.h>
+#include <unistd.h>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -6,6 +8,7 @@
 #include <sstream>
 
 #include "firmware/parameters/parameters.h"
+#include "host_sim/run/session/session_turns.h"
 #include "tests/unit/host_sim/run/session/session_fixture.h"
 
 namespace screed {
@@ -141,6 +144,51 @@ TEST_F(SessionTest, ARunMayBeEmptyAndWithoutTerrain) {
   EXPECT_FALSE(reader.terrain_before());
   EXPECT_FALSE(reader.terrain_after());
   EXPECT_EQ(reader.compute_content_hash(), hash);
+}
+
+// The writer changes the file all the while; whenever it is opened, whole blocks are in it.
+TEST_F(SessionTest, ASessionCanBeReadWhileItIsWritten) {
+  constexpr std::size_t kBlock = 1024;
+  constexpr std::size_t kBlocks = 40;
+  const Recording run = random_run(kBlock);
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      SessionWriter writer(file_, run.info);
+      writer.write_terrain_before(run.before.view());
+      for (std::size_t i = 0; i < kBlocks * kBlock; ++i)
+        writer.append(run.frames[i % kBlock], run.samples[i % kBlock], run.outputs[i % kBlock]);
+      writer.write_terrain_after(run.after.view());
+      writer.finish();
+    } catch (...) {
+      _exit(1);
+    }
+    _exit(0);
+  }
+  std::size_t reads = 0;
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (!is_being_written(file_)) continue;
+    try {
+      const SessionReader reader(file_);
+      if (!reader.running()) continue;  // it has just ended
+      EXPECT_FALSE(reader.complete());
+      EXPECT_EQ(reader.frames() % kBlock, 0U);
+      if (reader.frames() == 0) continue;
+      std::vector<SimFrame> last(1);
+      reader.read(reader.frames() - 1, std::span(last));
+      EXPECT_EQ(packed<kFrameBytes>(last[0]), packed<kFrameBytes>(run.frames.back()));
+      ++reads;
+    } catch (const InputError& error) {
+      expect_line(error.what(), file_, "only just begun");
+    }
+  }
+  ASSERT_EQ(status, 0);
+  EXPECT_GT(reads, 0U);
+  const SessionReader reader(file_);
+  EXPECT_FALSE(reader.running());
+  EXPECT_TRUE(reader.complete());
+  EXPECT_EQ(reader.frames(), kBlocks * kBlock);
 }
 
 TEST_F(SessionTest, AnExperimentTextMayBeLong) {
