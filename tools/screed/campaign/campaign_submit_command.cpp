@@ -149,8 +149,9 @@ void refuse_while_active(const TaskFolder& folder) {
   for (const SlurmJob& job : slurm_jobs(folder)) {
     const int tasks = slurm::active_tasks(job.number);
     if (tasks == 0) continue;
-    throw InputError("job " + job.number + " of this campaign has " + std::to_string(tasks) +
-                     " tasks in the queue; wait for its end, or end it with scancel " + job.number);
+    throw InputError("job " + job.number + " of this campaign has " +
+                     counted(static_cast<std::uint64_t>(tasks), "task") +
+                     " in the queue; wait for its end, or end it with scancel " + job.number);
   }
 }
 
@@ -177,13 +178,14 @@ int run_submit(const SubmitArguments& arguments, const std::string& version) {
   write_file(folder / "shards", shards_text(shards));
   write_file(script, script_text(arguments, campaign, shards, trial, folder));
   if (arguments.dry_run) {
-    print("{} runs in {} tasks; script {}\n", runs.size(), shards.size(), script);
+    print("{} in {}; script {}\n", counted(runs.size(), "run"), counted(shards.size(), "task"),
+          script);
     return 0;
   }
   const std::string job = slurm::submit(script);
   write_file(folder / "job", job + "\n");
-  print("{}: job {}, {} runs in {} tasks\n  folder  {}\n", campaign.plan.settings.name, job,
-        runs.size(), shards.size(), campaign.folder.path);
+  print("{}: job {}, {} in {}\n  folder  {}\n", campaign.plan.settings.name, job,
+        counted(runs.size(), "run"), counted(shards.size(), "task"), campaign.folder.path);
   return 0;
 }
 
@@ -226,7 +228,8 @@ void print_jobs(const TaskFolder& folder) {
   for (const SlurmJob& job : slurm_jobs(folder)) {
     try {
       if (const int tasks = slurm::active_tasks(job.number); tasks > 0)
-        print("  job {}  {} tasks in the queue\n", job.number, tasks);
+        print("  job {}  {} in the queue\n", job.number,
+              counted(static_cast<std::uint64_t>(tasks), "task"));
     } catch (const RunError& error) {
       std::cerr << "note: job " << job.number << ": " << error.what() << "\n";
     }

@@ -2,12 +2,15 @@
 #include "tools/screed/campaign/campaign_work.h"
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -201,7 +204,10 @@ std::vector<SlurmJob> slurm_jobs(const TaskFolder& folder) {
   for (const auto& entry : fs::directory_iterator(folder.slurm(), error)) {
     std::istringstream text(read_text(entry.path() / "job"));
     std::string number;
-    if (text >> number) jobs.push_back({number, entry.path()});
+    if (!(text >> number)) continue;
+    if (!slurm::is_job_id(number))
+      throw InputError((entry.path() / "job").string() + ": '" + number + "' is no id of a job");
+    jobs.push_back({number, entry.path()});
   }
   std::sort(jobs.begin(), jobs.end(),
             [](const SlurmJob& a, const SlurmJob& b) { return a.folder < b.folder; });
@@ -232,24 +238,41 @@ std::vector<size_t> read_shard(const std::string& text, const CampaignPlan& plan
 namespace slurm {
 namespace {
 
-/// Of both standard output and standard error, without line feeds at the end.
-ShellOutput run(const std::string& command) {
-  ShellOutput output = shell_output(command + " 2>&1");
-  while (output.text.ends_with('\n')) output.text.pop_back();
-  return output;
-}
+/// What a program of Slurm says. Clusters add notices of their own to both.
+struct Answer {
+  int exit_code;
+  std::string out;
+  std::string err;
 
-/// The first line, for messages.
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
+  /// The first line, for messages.
+  [[nodiscard]] std::string first_line() const {
+    const std::string& text = err.empty() ? out : err;
+    return text.substr(0, text.find('\n'));
+  }
+};
+
+Answer run(const std::string& command) {
+  std::string errors = (fs::temp_directory_path() / "screed-slurm.XXXXXX").string();
+  const int file = mkstemp(errors.data());
+  if (file < 0) throw RunError(errors + ": cannot be made: " + std::strerror(errno));
+  close(file);
+  const ShellOutput output = shell_output(command + " 2>" + slurm::quoted(errors));
+  const Answer answer{output.exit_code, output.text, read_text(errors)};
+  std::error_code ignored;
+  fs::remove(errors, ignored);
+  return answer;
 }
 
 }  // namespace
 
+bool is_job_id(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+}
+
 int max_array_size() {
-  const ShellOutput output = run("scontrol show config");
-  if (output.exit_code != 0) throw RunError("Slurm does not answer: " + first_line(output.text));
-  std::istringstream lines(output.text);
+  const Answer answer = run("scontrol show config");
+  if (answer.exit_code != 0) throw RunError("Slurm does not answer: " + answer.first_line());
+  std::istringstream lines(answer.out);
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("MaxArraySize", 0) != 0) continue;
     return std::atoi(line.substr(line.find('=') + 1).c_str());
@@ -258,22 +281,33 @@ int max_array_size() {
 }
 
 std::string submit(const std::string& script) {
-  const ShellOutput output = run("sbatch --parsable " + quoted(script));
-  if (output.exit_code != 0) throw RunError("sbatch: " + first_line(output.text));
-  return output.text.substr(0, output.text.find(';'));  // "12", or "12;cluster"
+  const Answer answer = run("sbatch --parsable " + quoted(script));
+  if (answer.exit_code != 0) throw RunError("sbatch: " + answer.first_line());
+  std::string job;
+  std::istringstream lines(answer.out);
+  for (std::string line; std::getline(lines, line);) {
+    line.resize(std::min(line.find(';'), line.size()));  // "12", or "12;cluster"
+    if (is_job_id(line)) job = line;
+  }
+  if (job.empty()) {
+    throw RunError("sbatch says no job id, but '" + answer.first_line() +
+                   "'; squeue shows whether there is a job all the same");
+  }
+  return job;
 }
 
 int active_tasks(const std::string& job) {
-  const ShellOutput output = run("squeue --noheader --array --format=%i --jobs=" + quoted(job));
-  if (output.exit_code == 0) {
+  const Answer answer = run("squeue --noheader --array --format=%i --jobs=" + quoted(job));
+  if (answer.exit_code == 0) {
     int tasks = 0;
-    std::istringstream lines(output.text);
-    for (std::string line; std::getline(lines, line);) ++tasks;
+    std::istringstream lines(answer.out);
+    for (std::string line; std::getline(lines, line);)
+      if (line == job || line.starts_with(job + "_")) ++tasks;
     return tasks;
   }
   // Slurm forgets jobs some minutes after their end.
-  if (output.text.find("Invalid job id") != std::string::npos) return 0;
-  throw RunError("Slurm does not answer: " + first_line(output.text));
+  if (answer.err.find("Invalid job id") != std::string::npos) return 0;
+  throw RunError("Slurm does not answer: " + answer.first_line());
 }
 
 std::string time_text(double seconds) {

@@ -71,19 +71,24 @@ struct SlurmJob {
   std::string number;
   std::filesystem::path folder;
 };
-/// Of this campaign, the oldest first.
+/// Of this campaign, the oldest first. Throws InputError for a kept id that is none.
 std::vector<SlurmJob> slurm_jobs(const TaskFolder& folder);
 
 /// The runs of a shard, "FILE:LINE", lines counted from 0. Throws InputError.
 std::vector<size_t> read_shard(const std::string& text, const CampaignPlan& plan);
 
-/// Slurm's programs: sbatch, squeue, scontrol.
+/// Slurm's programs: sbatch, squeue, scontrol. Whatever notices a cluster adds to what they print
+/// are passed over.
 namespace slurm {
+
+/// Whether this is what Slurm calls a job: digits.
+bool is_job_id(const std::string& text);
 
 /// Most tasks of a job array: what the cluster allows. Throws RunError when Slurm does not answer.
 int max_array_size();
 
-/// Submits a script. Returns the job's number. Throws RunError with Slurm's own words.
+/// Submits a script. Returns the job's number. Throws RunError with Slurm's own words, also when
+/// there is no number among them.
 std::string submit(const std::string& script);
 
 /// Tasks of a job that wait or run; 0 of a job that Slurm does not know any more. Throws RunError

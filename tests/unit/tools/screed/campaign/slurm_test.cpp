@@ -1,6 +1,10 @@
-// Texts for Slurm and for shells, and shards.
+// Texts for Slurm and for shells, shards, and what Slurm's programs print.
 
 #include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
 
 #include "host_sim/core/errors.h"
 #include "tests/temp_folder.h"
@@ -35,6 +39,52 @@ TEST(Slurm, ReadsTheLineOfAShard) {
   EXPECT_THROW(read_shard(file, plan), InputError);
   EXPECT_THROW(read_shard(file + ":x", plan), InputError);
   EXPECT_THROW(read_shard("gone:0", plan), InputError);
+}
+
+/// Programs of these names come first on the path.
+class SlurmPrograms : public ::testing::Test {
+ protected:
+  SlurmPrograms() { setenv("PATH", (folder_.path().string() + ":" + path_).c_str(), 1); }
+  ~SlurmPrograms() override { setenv("PATH", path_.c_str(), 1); }
+
+  void program(const char* name, const std::string& script) {
+    write_text(folder_.path() / name, "#!/bin/sh\n" + script);
+    std::filesystem::permissions(folder_.path() / name, std::filesystem::perms::owner_all);
+  }
+
+ private:
+  TempFolder folder_;
+  std::string path_ = std::getenv("PATH");
+};
+
+TEST_F(SlurmPrograms, NoticesAreNoPartOfAJob) {
+  program("sbatch", "echo 'sbatch: no partition specified' >&2; echo 4711");
+  EXPECT_EQ(slurm::submit("array.sh"), "4711");
+  program("sbatch", "echo 'Welcome. Your budget: 12 h'; echo '4711;west'; echo '2 jobs wait'");
+  EXPECT_EQ(slurm::submit("array.sh"), "4711");
+  program("sbatch", "echo 'Submitted as -'; echo 'sbatch: warned' >&2");
+  EXPECT_THROW(slurm::submit("array.sh"), RunError);
+  program("sbatch", "echo 'sbatch: error: Batch job submission failed' >&2; exit 1");
+  try {
+    slurm::submit("array.sh");
+    FAIL() << "it failed";
+  } catch (const RunError& error) {
+    EXPECT_STREQ(error.what(), "sbatch: sbatch: error: Batch job submission failed");
+  }
+}
+
+TEST_F(SlurmPrograms, TasksInTheQueueAreThoseOfTheJob) {
+  program("squeue", "echo 'maintenance on Monday' >&2; echo 'CLUSTER: west'; echo 47_1; echo 47_2");
+  EXPECT_EQ(slurm::active_tasks("47"), 2);
+  EXPECT_EQ(slurm::active_tasks("4"), 0);
+  program("squeue", "echo 47");
+  EXPECT_EQ(slurm::active_tasks("47"), 1);
+  program("squeue", "echo 'slurm_load_jobs error: Invalid job id specified' >&2; exit 1");
+  EXPECT_EQ(slurm::active_tasks("47"), 0);
+  program("squeue", "echo 'squeue: error: no controller' >&2; exit 1");
+  EXPECT_THROW(slurm::active_tasks("47"), RunError);
+  program("scontrol", "echo 'notice' >&2; echo 'MaxArraySize            = 1001'");
+  EXPECT_EQ(slurm::max_array_size(), 1001);
 }
 
 }  // namespace
