@@ -1,5 +1,6 @@
 // The page that `screed monitor` shows: rows of values, and their layouts.
 #include "host_sim/ground_station/link/dashboard.h"
+#include "host_sim/core/figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <iterator>
 
 #include "firmware/protocol/messages.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/ground_station/telemetry/arming.h"
 #include "host_sim/ground_station/telemetry/battery_charge.h"
 #include "host_sim/ground_station/telemetry/track_slip.h"
@@ -96,9 +98,9 @@ class RowMaker {
   /// A signal in its unit.
   DashboardRow signal(int importance, const char* label, const char* path) const {
     const SignalRef place = find_signal(path);
-    const std::string unit = place.signal->unit;
+    const std::optional<int64_t> raw = robot_.raw(path);
     return row(importance, label, place.message->name,
-               robot_.text(path) + (unit.empty() ? "" : " " + unit));
+               raw.has_value() ? display_name(place.signal->shown(*raw)) : "-");
   }
 
   /// A signal with a bar that is full at `full` and warns from `warn` on.
@@ -305,7 +307,8 @@ void draw_head(TextCanvas& page, const DashboardInput& input, const RobotHistory
     }
   }
   page.text_within(x + 2, 0, page.width() - x - 2,
-                   (lost ? "LINK LOST  " : "") + input.link_name + " " + input.link.text,
+                   (lost ? "LINK LOST  " : "") + input.link_name + " " + input.link.text +
+                       (input.link.hint.empty() ? "" : "; " + input.link.hint),
                    link_style);
 }
 
@@ -478,8 +481,8 @@ void draw_dashboard(TextCanvas& page, const DashboardInput& input) {
 
 std::string plain_report(const DashboardInput& input) {
   std::string report = "link " + input.link_name + ": " + input.link.text + ", " +
-                       std::to_string(input.link.received) + " frames, " + refused_text(input) +
-                       "\n";
+                       counted(input.link.received, "frame") + ", " + refused_text(input) + "\n";
+  if (!input.link.hint.empty()) report += "  " + input.link.hint + "\n";
   for (const auto& [key, robot] : input.fleet->robots()) {
     report += key.text() + ": " + robot.text("heartbeat.state");
     if (link_lost(input, robot)) {
@@ -487,8 +490,8 @@ std::string plain_report(const DashboardInput& input) {
       report += ", SILENT for " + number("%.1f s", age_s);
     }
     if (const auto rssi_dbm = robot.rssi_dbm()) report += ", " + std::to_string(*rssi_dbm) + " dBm";
-    report += ", " + std::to_string(robot.frames()) + " frames, " + std::to_string(robot.lost()) +
-              " lost\n";
+    report +=
+        ", " + counted(robot.frames(), "frame") + ", " + std::to_string(robot.lost()) + " lost\n";
     for (const DashboardGroup& group : dashboard_groups(input, robot)) {
       for (const DashboardRow& row : group.rows) {
         if (row.importance == 0) report += "  " + group.title + ": " + row.value + "\n";
@@ -508,8 +511,7 @@ std::string plain_report(const DashboardInput& input) {
       for (const SignalInfo& signal : message.signals) {
         if (signal.role != SignalRole::kData || signal.flags[0] != '\0') continue;
         report += std::string(" ") + signal.name + " " +
-                  signal.text(signal.raw(samples.front().data.data())) +
-                  (signal.unit[0] == '\0' ? "" : std::string(" ") + signal.unit);
+                  signal.shown(signal.raw(samples.front().data.data()));
       }
       report += "\n";
     }

@@ -32,6 +32,7 @@ struct LinkFrame {
 struct LinkStatus {
   bool up = false;
   std::string text = "not open";     ///< in words: "up", or what is wrong
+  std::string hint = {};             ///< what comes looks like another setting; empty: it does not
   uint64_t received = 0;             ///< frames
   uint64_t sent = 0;                 ///< frames
   uint64_t not_sent = 0;             ///< frames that the link did not take

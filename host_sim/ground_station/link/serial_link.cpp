@@ -96,8 +96,48 @@ std::optional<fs::path> lasting_name_of(const fs::path& device, const fs::path& 
 
 }  // namespace
 
+ApiGuess::ApiGuess(std::optional<XbeeApiMode> chosen) : chosen_(chosen) {
+  using Mode = std::optional<XbeeApiMode>;
+  for (const Mode mode : {Mode(), Mode(XbeeApiMode::kPlain), Mode(XbeeApiMode::kEscaped)}) {
+    if (mode != chosen)
+      others_.push_back({mode, XbeeApiParser(mode.value_or(XbeeApiMode::kPlain))});
+  }
+}
+
+std::string ApiGuess::feed(std::span<const uint8_t> bytes, uint64_t received) {
+  constexpr uint64_t kEnough = 10;  // frames of the chosen setting: nothing to guess any more
+  constexpr uint64_t kSure = 3;
+  constexpr uint64_t kBytesOfNoise = 1000;
+  if (received >= kEnough) return "";
+  bytes_ += bytes.size();
+  for (const uint8_t byte : bytes) {
+    const bool of_text = (byte >= ' ' && byte <= '~') || byte == '\r' || byte == '\n';
+    odd_bytes_ += of_text ? 0 : 1;
+  }
+  for (Reading& other : others_) {
+    CanFrame frame{};
+    std::vector<XbeeFrame> packets;
+    for (const uint8_t byte : bytes) {
+      if (other.mode.has_value()) {
+        other.packets.feed(byte, packets);
+      } else {
+        other.found += other.lines.feed(byte, frame) ? 1 : 0;
+      }
+    }
+    for (const XbeeFrame& packet : packets) other.found += received_packet(packet) ? 1 : 0;
+    if (other.found < kSure || other.found <= received) continue;
+    if (!other.mode.has_value())
+      return "lines of a transparent module come in: leave out --api, or set the module's AP to 1";
+    const std::string mode = *other.mode == XbeeApiMode::kPlain ? "1" : "2";
+    return "packets of API mode " + mode + " come in: --api " + mode + " reads them";
+  }
+  if (received == 0 && bytes_ >= kBytesOfNoise && 4 * odd_bytes_ > bytes_)
+    return "bytes come in that are no lines: does --baud fit the module?";
+  return "";
+}
+
 SerialLink::SerialLink(const fs::path& device, const SerialOptions& options)
-    : options_(options), name_(device.string()) {
+    : options_(options), name_(device.string()), guess_(options.api) {
   speed_of(options.baud);
   if (options.api.has_value()) api_.emplace(*options.api);
   open_port(device);
@@ -166,7 +206,9 @@ void SerialLink::receive(std::chrono::milliseconds wait, std::vector<LinkFrame>&
   std::array<uint8_t, 4096> bytes;
   const ssize_t count = read(port_.get(), bytes.data(), bytes.size());
   if (count > 0) {
-    process(std::span(bytes).first(static_cast<size_t>(count)), frames);
+    const std::span<const uint8_t> read = std::span(bytes).first(static_cast<size_t>(count));
+    process(read, frames);
+    status_.hint = guess_.feed(read, status_.received);
   } else if (count == 0 || (errno != EAGAIN && errno != EINTR)) {
     lost("gone; waiting for it to come back");
   }

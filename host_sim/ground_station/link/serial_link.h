@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -42,6 +43,28 @@ struct SerialOptions {
   std::filesystem::path by_id = "/dev/serial/by-id";
 };
 
+/// Reads what comes as it would look with the other settings of `--api`, to name the one that fits.
+class ApiGuess {
+ public:
+  explicit ApiGuess(std::optional<XbeeApiMode> chosen);
+
+  /// received: frames that the chosen setting has found. Returns what to tell the user, or nothing.
+  std::string feed(std::span<const uint8_t> bytes, uint64_t received);
+
+ private:
+  struct Reading {
+    std::optional<XbeeApiMode> mode;
+    XbeeApiParser packets;
+    SlcanParser lines = {};
+    uint64_t found = 0;
+  };
+
+  std::optional<XbeeApiMode> chosen_;
+  std::vector<Reading> others_;
+  uint64_t bytes_ = 0;
+  uint64_t odd_bytes_ = 0;  ///< that no text has
+};
+
 class SerialLink : public Link {
  public:
   /// Opens the port. Throws InputError when there is none of this name or it is no terminal, or the
@@ -75,6 +98,7 @@ class SerialLink : public Link {
   LinkStatus status_;
   std::chrono::steady_clock::time_point looked_at_;
   std::optional<XbeeApiParser> api_;
+  ApiGuess guess_;
   XbeeFrameType heard_type_ = XbeeFrameType::kReceive;
   /// Lines of several robots are distinguished by their modules' addresses; 0 without API mode.
   std::map<uint64_t, SlcanParser> parsers_;

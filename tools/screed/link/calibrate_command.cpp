@@ -158,7 +158,8 @@ class Calibration {
       session_.pump(kCalibrationPump);
     }
     if (!link_->status().up) throw RunError(link_->name() + ": " + link_->status().text);
-    if (!session_.ready()) throw RunError(link_->name() + ": " + not_heard_text(fleet_, session_));
+    if (!session_.ready())
+      throw RunError(link_->name() + ": " + not_heard_text(fleet_, session_, *link_));
   }
 
   void collect_plain() {

@@ -240,8 +240,12 @@ constexpr char kNoAnswer[] = "no answer";
 
 }  // namespace
 
-std::string not_heard_text(const FleetView& fleet, const CommandSession& session) {
-  if (fleet.robots().empty()) return "no robot is heard";
+std::string not_heard_text(const FleetView& fleet, const CommandSession& session,
+                           const Link& link) {
+  if (fleet.robots().empty()) {
+    const std::string& hint = link.status().hint;
+    return hint.empty() ? "no robot is heard" : "no robot is heard: " + hint;
+  }
   return fleet.robots().begin()->first.text() + " is heard, but the key is that of robot " +
          std::to_string(session.node()) +
          "; --key names another, make flash NODE=N gives a robot its number";
@@ -268,7 +272,8 @@ void RobotSession::meet() {
     session_.pump(kSessionPump);
   }
   if (!link_->status().up) throw RunError(link_->name() + ": " + link_->status().text);
-  if (!session_.ready()) throw RunError(link_->name() + ": " + not_heard_text(fleet_, session_));
+  if (!session_.ready())
+    throw RunError(link_->name() + ": " + not_heard_text(fleet_, session_, *link_));
 }
 
 std::optional<int> RobotSession::node() const {

@@ -70,7 +70,7 @@ void write_remembered_link(const std::filesystem::path& file, const LinkArgument
 std::string remembered_link_text(const LinkArguments& link);
 
 /// Why no heartbeat of the session's robot was heard: nothing was, or another robot.
-std::string not_heard_text(const FleetView& fleet, const CommandSession& session);
+std::string not_heard_text(const FleetView& fleet, const CommandSession& session, const Link& link);
 
 /// One robot at the other end of a link, for subcommands that ask it something and end: meets the
 /// robot, sends commands, says the answers.

@@ -307,6 +307,45 @@ TEST_F(LinkTest, RobotsBehindOneRadioAreToldApart) {
   EXPECT_EQ(std::string(sent[0].content.begin() + 10, sent[0].content.end()), "t0010\r");
 }
 
+// What a module sends in each setting, read with each: the one that fits is named.
+TEST_F(LinkTest, AWrongApiSettingIsNamed) {
+  constexpr std::optional<XbeeApiMode> kSettings[] = {std::nullopt, XbeeApiMode::kPlain,
+                                                      XbeeApiMode::kEscaped};
+  const std::string expected[] = {
+      "lines of a transparent module come in: leave out --api, or set the module's AP to 1",
+      "packets of API mode 1 come in: --api 1 reads them",
+      "packets of API mode 2 come in: --api 2 reads them"};
+  for (size_t module = 0; module < 3; ++module) {
+    for (size_t chosen = 0; chosen < 3; ++chosen) {
+      PseudoTerminal device(folder_ / "radio");
+      SerialOptions options;
+      options.api = kSettings[chosen];
+      SerialLink link(folder_ / "radio", options);
+      for (int i = 0; i < 8; ++i) {
+        // From the 64-bit address of a module of Digi; 0x13 and 0x7D are escaped.
+        XbeeFrame frame{XbeeFrameType::kReceive64, {0x00, 0x13, 0xA2, 0x00, 0x7D, 2, 3, 4, 40, 0}};
+        const std::string line = "t2103AABBCC\r";
+        frame.content.insert(frame.content.end(), line.begin(), line.end());
+        device.write(module == 0 ? text(line) : encode_xbee(frame, *kSettings[module]));
+      }
+      std::vector<LinkFrame> frames;
+      for (int i = 0; i < 3; ++i) link.receive(milliseconds(10), frames);
+      EXPECT_EQ(link.status().hint, module == chosen ? "" : expected[module])
+          << "module " << module << ", chosen " << chosen;
+      EXPECT_EQ(frames.size(), module == chosen ? 8U : 0U);
+    }
+  }
+}
+
+TEST_F(LinkTest, BytesOfAnotherBaudRateAreNamed) {
+  PseudoTerminal device(folder_ / "radio");
+  SerialLink link(folder_ / "radio", {});
+  for (int i = 0; i < 5; ++i) device.write(std::vector<uint8_t>(250, 0xF0));
+  std::vector<LinkFrame> frames;
+  for (int i = 0; i < 3; ++i) link.receive(milliseconds(10), frames);
+  EXPECT_EQ(link.status().hint, "bytes come in that are no lines: does --baud fit the module?");
+}
+
 // ---- SocketCAN: what can be said without an interface; the rest is tests/can
 
 TEST(CanLink, WithoutCanOrInterfaceOneClearLine) {
