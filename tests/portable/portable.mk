@@ -15,8 +15,8 @@ PORTABLE_CORE_FOLDERS := firmware $(patsubst %/,%,$(wildcard firmware/*/)) nn/in
   $(addprefix host_sim/,devices/sensors devices/radio leveling standin physics/kernels physics/soil physics/terrain \
   physics/vehicle)
 PORTABLE_CORE_SOURCES := $(PORTABLE_CORE_ALONE:%=host_sim/%.cpp) $(wildcard $(PORTABLE_CORE_FOLDERS:%=%/*.cpp))
-PORTABLE_CORE_SOURCES := $(filter-out %avx2.cpp %avx512.cpp %/grey_image.cpp %/ode_world.cpp %/vehicle.cpp \
-  %/model_report.cpp,$(PORTABLE_CORE_SOURCES))
+PORTABLE_CORE_SOURCES := $(filter-out %avx2.cpp %avx512.cpp %/grey_image.cpp %/elevation_file.cpp %/ode_world.cpp \
+  %/vehicle.cpp %/model_report.cpp,$(PORTABLE_CORE_SOURCES))
 PARTICLE_SOURCES := $(filter-out %avx2.cpp %avx512.cpp,$(wildcard host_sim/physics/particles/*.cpp))
 # A folder is compiled as one, but for those whose helpers are called alike.
 PORTABLE_ALONE := $(wildcard firmware/leveling/*.cpp) host_sim/physics/particles/bed_kernel_scalar.cpp

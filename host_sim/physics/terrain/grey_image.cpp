@@ -34,7 +34,7 @@ constexpr std::uintmax_t kLargestFile_bytes = std::uintmax_t{1} << 30;
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& what) {
   throw InputError(path.string() + ": " + what +
-                   "; allowed: grey PNG (8 or 16 bit, no alpha) or grey uncompressed BMP (8 or 24 "
+                   "; allowed: grey PNG (8 or 16 bit, opaque) or grey uncompressed BMP (8 or 24 "
                    "bit), 1 to " +
                    std::to_string(kLargestImageSide) + " samples a side");
 }
@@ -104,15 +104,17 @@ bool read_png_header(PngReader& reader) {
   return true;
 }
 
-void prepare_png_rows(PngReader& reader) {
-  png_set_expand_gray_1_2_4_to_8(reader.png);
+// From then on a pixel is grey, grey and alpha, three colours, or those and alpha.
+bool prepare_png_rows(PngReader& reader) {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+  png_set_expand(reader.png);
   png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
+  return true;
 }
 
 bool read_png_rows(PngReader& reader, png_bytepp rows) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
-  prepare_png_rows(reader);
   png_read_image(reader.png, rows);
   png_read_end(reader.png, nullptr);
   return true;
@@ -145,27 +147,15 @@ GreyImage read_png(const fs::path& path, std::span<const uint8_t> bytes) {
   if (reader.info == nullptr) throw RunError(path.string() + ": out of memory for the PNG reader");
   if (!read_png_header(reader)) refuse(path, std::string("corrupt PNG: ") + reader.error.data());
 
-  switch (png_get_color_type(reader.png, reader.info)) {
-    case PNG_COLOR_TYPE_GRAY:
-      break;
-    case PNG_COLOR_TYPE_PALETTE:
-      refuse(path, "PNG with a colour palette");
-    case PNG_COLOR_TYPE_RGB:
-      refuse(path, "PNG with three colour channels");
-    default:
-      refuse(path, "PNG with an alpha channel");
-  }
-  if (png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0) {
-    refuse(path, "PNG with a transparent grey");
-  }
-
   GreyImage image;
   image.width = static_cast<int>(width);
   image.height = static_cast<int>(height);
   image.bit_depth = png_get_bit_depth(reader.png, reader.info) == 16 ? 16 : 8;
   image.max_value = image.bit_depth == 16 ? 65535 : 255;
   const size_t sample_bytes = image.bit_depth == 16 ? 2 : 1;
-  const size_t row_bytes = static_cast<size_t>(width) * sample_bytes;
+  if (!prepare_png_rows(reader)) refuse(path, std::string("corrupt PNG: ") + reader.error.data());
+  const size_t channels = png_get_channels(reader.png, reader.info);
+  const size_t row_bytes = static_cast<size_t>(width) * channels * sample_bytes;
 
   std::vector<uint8_t> raw(row_bytes * static_cast<size_t>(height));
   std::vector<png_bytep> rows(static_cast<size_t>(height));
@@ -174,10 +164,25 @@ GreyImage read_png(const fs::path& path, std::span<const uint8_t> bytes) {
     refuse(path, std::string("truncated or corrupt PNG: ") + reader.error.data());
   }
 
-  image.samples.resize(raw.size() / sample_bytes);
+  const auto sample = [&](size_t i) -> uint16_t {
+    return sample_bytes == 1 ? uint16_t{raw[i]}
+                             : static_cast<uint16_t>((raw[2 * i] << 8) | raw[2 * i + 1]);
+  };
+  image.samples.resize(raw.size() / sample_bytes / channels);
   for (size_t i = 0; i < image.samples.size(); ++i) {
-    image.samples[i] =
-        sample_bytes == 1 ? raw[i] : static_cast<uint16_t>((raw[2 * i] << 8) | raw[2 * i + 1]);
+    const size_t pixel = i * channels;
+    const auto refuse_pixel = [&](const char* what) {
+      refuse(path, std::string("PNG with a ") + what + " pixel in column " +
+                       std::to_string(i % static_cast<size_t>(width)) + ", row " +
+                       std::to_string(i / static_cast<size_t>(width)));
+    };
+    image.samples[i] = sample(pixel);
+    if (channels >= 3 &&
+        (sample(pixel + 1) != sample(pixel) || sample(pixel + 2) != sample(pixel))) {
+      refuse_pixel("coloured");
+    }
+    if (channels % 2 == 0 && sample(pixel + channels - 1) != image.max_value)
+      refuse_pixel("transparent");
   }
   return image;
 }

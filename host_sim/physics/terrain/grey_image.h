@@ -22,9 +22,11 @@ struct GreyImage {
 };
 
 /// Reads a grey PNG (8 or 16 bit; 1, 2 and 4 bit are widened to 8) or a grey, uncompressed BMP
-/// (8 bit with a palette of greys, or 24 bit with red = green = blue).
+/// (8 bit with a palette of greys, or 24 bit). Channels or a palette of colours are as good when
+/// red = green = blue everywhere, and alpha when all is opaque.
 /// Throws InputError, one line with the path and what is allowed, for everything else: missing or
-/// unreadable file, folder, other format, colour, alpha, truncated or corrupt data, absurd size.
+/// unreadable file, folder, other format, a coloured or transparent pixel, truncated or corrupt
+/// data, absurd size.
 GreyImage read_grey_image(const std::filesystem::path& path);
 
 /// Writes a 16-bit grey PNG from width * height samples, row 0 = top.

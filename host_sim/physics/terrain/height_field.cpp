@@ -7,6 +7,7 @@
 #include <numeric>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
@@ -83,21 +84,36 @@ HeightField::HeightField(int nx, int ny, double spacing_m, bool wrap)
 }
 
 HeightField HeightField::from_image(const GreyImage& image, const HeightFieldOptions& options) {
-  require(kSize, options.size_m);
   require(kScale, options.scale_m);
+  return from_samples(image.width, image.height, {image.samples.begin(), image.samples.end()},
+                      options.scale_m / kHeightUnit_m / image.max_value, options);
+}
+
+HeightField HeightField::from_heights(int width, int height, const std::vector<double>& heights_m,
+                                      const HeightFieldOptions& options) {
+  require_nodes(width, height);
+  const auto [lowest, highest] = std::minmax_element(heights_m.begin(), heights_m.end());
+  require({"highest less lowest height", 0.0, kLargestHeight_m}, *highest - *lowest);
+  std::vector<double> samples;
+  samples.reserve(heights_m.size());
+  for (const double height_m : heights_m) samples.push_back(height_m - *lowest);
+  return from_samples(width, height, std::move(samples), 1.0 / kHeightUnit_m, options);
+}
+
+HeightField HeightField::from_samples(int width, int height, std::vector<double> samples,
+                                      double units_per_sample, const HeightFieldOptions& options) {
+  require(kSize, options.size_m);
   require(kSmoothing, options.smoothing_m);
   if (options.max_slope_deg) require(kMaxSlope, *options.max_slope_deg);
-  require_nodes(image.width, image.height);
+  require_nodes(width, height);
 
-  const int longer = std::max(image.width, image.height);
+  const int longer = std::max(width, height);
   const double spacing_m = options.size_m / (options.wrap ? longer : longer - 1);
-  HeightField field(image.width, image.height, spacing_m, options.wrap);
-  std::vector<double> samples(image.samples.begin(), image.samples.end());
+  HeightField field(width, height, spacing_m, options.wrap);
   if (options.smoothing_m > 0.0) {
-    gaussian_filter(samples, image.width, image.height, options.smoothing_m / spacing_m,
+    gaussian_filter(samples, width, height, options.smoothing_m / spacing_m,
                     options.wrap ? FilterEdge::kWrapped : FilterEdge::kRepeated);
   }
-  double units_per_sample = options.scale_m / kHeightUnit_m / image.max_value;
   fill_from_samples(field, samples, units_per_sample);
 
   if (options.max_slope_deg) {

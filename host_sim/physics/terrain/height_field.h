@@ -43,7 +43,7 @@ struct CellHeights {
 /// How an image becomes terrain.
 struct HeightFieldOptions {
   double size_m = 3.0;   ///< length of the bed's longer side, 0.1..1000
-  double scale_m = 0.2;  ///< height of full white, 0.0001..100; black is 0
+  double scale_m = 0.2;  ///< of images: height of full white, 0.0001..100; black is 0
   /// Standard deviation of a Gaussian low-pass over the image before anything else, metres on the
   /// bed; 0..1; 0: none. An elevation model at robot scale has cliffs of one pixel; without them
   /// more relief fits under a slope limit.
@@ -68,6 +68,12 @@ class HeightField {
   /// With max_slope_deg the steepest slope is at most the limit and, if it was above, short of it
   /// by no more than the rounding of heights: about 2 kHeightUnit_m a grid spacing.
   static HeightField from_image(const GreyImage& image, const HeightFieldOptions& options);
+
+  /// The same from heights in metres above whatever: width * height, row 0 is the north edge. The
+  /// lowest becomes 0. Throws InputError as from_image(), and when the highest is more than 127 m
+  /// above it.
+  static HeightField from_heights(int width, int height, const std::vector<double>& heights_m,
+                                  const HeightFieldOptions& options);
 
   /// Heights in metres from f(x, y) at the nodes, rounded to the unit. Throws InputError as the
   /// constructor, or when a height is not finite or not within +-127 m.
@@ -170,6 +176,9 @@ class HeightField {
   [[nodiscard]] int64_t height_sum() const;
 
  private:
+  static HeightField from_samples(int width, int height, std::vector<double> samples,
+                                  double units_per_sample, const HeightFieldOptions& options);
+
   struct Axis {
     int nodes;
     double begin_m;        // the west or south edge

@@ -127,15 +127,18 @@ struct MapSection {
   template <class Keys>
   static void list(Keys& keys) {
     using M = MapSection;
-    keys.text("filename", "a grey PNG or BMP file", "height map; left out: level ground, or a ramp",
-              &M::filename, [](const std::string& text) { return !text.empty(); });
+    keys.text("filename", "a grey PNG or BMP, or heights: .asc, .npy, .tif",
+              "height map; left out: level ground, or a ramp", &M::filename,
+              [](const std::string& text) { return !text.empty(); });
     keys.real("size", "m", 0.1, 1000, "length of the bed's longer side", &M::size_m)
         .replaces([](M& map) { map.xy_scale.reset(); })
         .written_if([](const M& map) { return !map.xy_scale.has_value(); });
-    keys.real("xy_scale", "m", 1e-5, 100,
-              "in place of size: width of a pixel; of particles: stacks a pixel, without unit",
-              &M::xy_scale);
-    keys.real("scale", "m", 0.0001, 100, "height of white", &M::scale_m);
+    keys.real(
+        "xy_scale", "m", 1e-5, 100,
+        "in place of size, or of a file's own: width of a pixel; of particles: stacks a pixel, "
+        "without unit",
+        &M::xy_scale);
+    keys.real("scale", "m", 0.0001, 100, "of images: height of white", &M::scale_m);
     keys.real("smoothing", "m", 0, 1, "standard deviation of a Gaussian low-pass over the image",
               &M::smoothing_m);
     keys.real("max_slope", "deg", 0.1, 89, "heights are scaled down until no slope is steeper",

@@ -47,6 +47,8 @@ McuRobot::McuRobot(const WorldOptions& options, Environment& plant, std::size_t 
   board_.mcu.on_sent([this](std::uint8_t byte) {
     devices().downlink().send(now_us(), {&byte, 1});
   });
+  const std::optional<int> gdb_port = options.robots[number].image->gdb_port;
+  if (gdb_port.has_value()) board_.mcu.wait_for_debugger(*gdb_port);
 }
 
 void McuRobot::store_in_eeprom() {

@@ -40,7 +40,8 @@ struct RobotSettings {
 /// A flash image, and the board that it runs on.
 struct RobotImage {
   std::string elf;
-  std::string board;  ///< a folder in boards/
+  std::string board;                           ///< a folder in boards/
+  std::optional<int> gdb_port = std::nullopt;  ///< where it waits for a debugger
 };
 
 /// What is one robot's own.

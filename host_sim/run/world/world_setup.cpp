@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <numbers>
 #include <string>
 #include <system_error>
 
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/physics/terrain/elevation_file.h"
 #include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/physics/world/plant.h"
 #include "host_sim/run/experiment/robot_model.h"
@@ -52,6 +54,43 @@ double size_of_bed(const Experiment& experiment, int pixels) {
   return (map.wrap() ? pixels : pixels - 1) * *map.xy_scale;
 }
 
+/// The bed that a file holds.
+HeightField terrain_of(const Experiment& experiment, const std::filesystem::path& file) {
+  const auto& map = experiment.map;
+  HeightFieldOptions options;
+  options.scale_m = map.scale_m;
+  options.smoothing_m = map.smoothing_m;
+  options.max_slope_deg = map.max_slope_deg;
+  options.wrap = map.wrap();
+  if (!is_elevation_file(file)) {
+    const GreyImage image = read_grey_image(file);
+    options.size_m = size_of_bed(experiment, std::max(image.width, image.height));
+    return HeightField::from_image(image, options);
+  }
+  const Elevation elevation = read_elevation(file);
+  const int longer = std::max(elevation.width, elevation.height);
+  const bool is_of_file = elevation.cell_m.has_value() && !map.xy_scale.has_value();
+  const std::string where = "[map] filename = " + map.filename + ": ";
+  if (map.scale_m != MapSection().scale_m) {
+    throw InputError(where +
+                     "its heights are in metres, so scale, the height of an image's white, "
+                     "does not apply");
+  }
+  if (is_of_file && map.size_m != MapSection().size_m) {
+    throw InputError(where +
+                     "it says how wide its cells are, so size does not apply; xy_scale "
+                     "gives its cells another width");
+  }
+  options.size_m = is_of_file ? *elevation.cell_m * (map.wrap() ? longer : longer - 1)
+                              : size_of_bed(experiment, longer);
+  try {
+    return HeightField::from_heights(elevation.width, elevation.height, elevation.heights_m,
+                                     options);
+  } catch (const InputError& error) {
+    throw InputError(where + error.what());
+  }
+}
+
 HeightField untrapped_terrain(const Experiment& experiment) {
   const auto& map = experiment.map;
   const bool soft = map.is_soil();
@@ -69,15 +108,8 @@ HeightField untrapped_terrain(const Experiment& experiment) {
     return map.ramp_deg == 0.0 ? HeightField::flat(map.size_m, spacing, map.wrap())
                                : HeightField::ramp(map.size_m, spacing, map.ramp_deg);
   }
-  const GreyImage image =
-      read_grey_image(find_data_file(experiment, map.filename, "[map] filename"));
-  HeightFieldOptions options;
-  options.size_m = size_of_bed(experiment, std::max(image.width, image.height));
-  options.scale_m = map.scale_m;
-  options.smoothing_m = map.smoothing_m;
-  options.max_slope_deg = map.max_slope_deg;
-  options.wrap = map.wrap();
-  HeightField field = HeightField::from_image(image, options);
+  HeightField field =
+      terrain_of(experiment, find_data_file(experiment, map.filename, "[map] filename"));
   if (map.of_particles()) raise(field, experiment.particles.depth_m);
   return soft ? resampled(field, experiment.soil.cell_m) : field;
 }
@@ -216,7 +248,9 @@ std::vector<RobotOptions> robot_options(const Experiment& experiment, const std:
   return robots;
 }
 
-std::unique_ptr<World> make_world(const Experiment& experiment, const WorldSetup& setup) {
+namespace {
+
+std::unique_ptr<World> world_of(const Experiment& experiment, const WorldSetup& setup) {
   WorldOptions options = world_options(experiment, setup);
   RobotOptions& first = options.robots[0];
   first.ground_port = setup.ground_port;
@@ -228,7 +262,7 @@ std::unique_ptr<World> make_world(const Experiment& experiment, const WorldSetup
           "[experiment] algorithm = training_drive is not part of the microcontroller's image; it "
           "runs without --hal mcu");
     }
-    first.image = RobotImage{*setup.image, setup.board};
+    first.image = RobotImage{*setup.image, setup.board, setup.gdb_port};
     check_image(first);
   }
   const Assembly model = make_robot_model(experiment, setup.board);
@@ -238,6 +272,16 @@ std::unique_ptr<World> make_world(const Experiment& experiment, const WorldSetup
       setup.environment ? setup.environment(std::move(terrain), model, options)
                         : std::make_unique<Plant>(std::move(terrain), model, options);
   return std::make_unique<World>(std::move(plant), options);
+}
+
+}  // namespace
+
+std::unique_ptr<World> make_world(const Experiment& experiment, const WorldSetup& setup) {
+  try {
+    return world_of(experiment, setup);
+  } catch (const InputError& error) {
+    throw with_place(experiment, error);
+  }
 }
 
 }  // namespace screed

@@ -29,6 +29,9 @@ struct WorldSetup {
   std::string board = kDefaultBoard;  ///< a folder of boards/
   /// The flash image that drives the first robot; firmware compiled for this machine all others.
   std::optional<std::string> image = std::nullopt;
+  /// The port of this machine at which the image waits for a debugger, before its first
+  /// instruction.
+  std::optional<int> gdb_port = std::nullopt;
   /// Programs outside at the ground end of the first robot's radio; may be null, must outlive the
   /// world.
   GroundPort* ground_port = nullptr;

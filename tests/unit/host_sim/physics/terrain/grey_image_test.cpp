@@ -78,6 +78,11 @@ TEST_F(GreyImageTest, ReadsGreyPng) {
   expect_image("grey2.png", 4, 1, 8, {0, 85, 170, 255});
 }
 
+TEST_F(GreyImageTest, ReadsGreysHoweverTheyAreStored) {
+  for (const char* name : {"rgb.png", "palette.png", "rgba.png", "grey_opaque.png"})
+    expect_image(name, 4, 3, 8, kGrey8);
+}
+
 TEST_F(GreyImageTest, IgnoresGamma) {
   expect_image("grey16_gamma.png", 4, 3, 16, kGrey16);
 }
@@ -98,10 +103,9 @@ TEST_F(GreyImageTest, ReadsBmpStoredFromTheTop) {
 }
 
 TEST_F(GreyImageTest, RefusesColourAndAlpha) {
-  expect_refused(image_path("rgb.png"), "three colour channels");
-  expect_refused(image_path("palette.png"), "colour palette");
-  expect_refused(image_path("grey_alpha.png"), "alpha");
-  expect_refused(image_path("grey_transparent.png"), "transparent");
+  expect_refused(image_path("colour.png"), "coloured pixel in column 0, row 0");
+  expect_refused(image_path("grey_alpha.png"), "transparent pixel in column 0, row 0");
+  expect_refused(image_path("grey_transparent.png"), "transparent pixel in column 1, row 2");
   expect_refused(image_path("colour8.bmp"), "BMP with colours");
   expect_refused(image_path("colour24.bmp"), "BMP with colours");
 }
@@ -191,7 +195,7 @@ TEST_F(GreyImageTest, WritesWhatItReads) {
 TEST_F(GreyImageTest, WritesRgb) {
   const fs::path path = folder_ / "rgb.png";
   write_rgb_png(path, 2, 1, std::vector<uint8_t>{1, 2, 3, 4, 5, 6});
-  expect_refused(path, "three colour channels");
+  expect_refused(path, "coloured pixel in column 0, row 0");
   EXPECT_THROW(write_rgb_png(path, 2, 2, std::vector<uint8_t>(6)), std::invalid_argument);
 }
 
