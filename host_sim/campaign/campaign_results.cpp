@@ -11,6 +11,7 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/core/hdf5_handle.h"
 #include "host_sim/core/json.h"
 #include "host_sim/leveling/leveling_meter.h"
@@ -339,8 +340,8 @@ void write_hdf5(const CampaignPlan& plan, const CampaignCount& count, const Tabl
 }  // namespace
 
 std::string CampaignCount::text() const {
-  if (complete()) return "complete: " + std::to_string(runs) + " runs";
-  std::string all = std::to_string(done) + " of " + std::to_string(runs) + " runs done";
+  if (complete()) return "complete: " + counted(runs, "run");
+  std::string all = std::to_string(done) + " of " + counted(runs, "run") + " done";
   if (failed > 0) all += ", " + std::to_string(failed) + " failed";
   if (missing() > 0) all += ", " + std::to_string(missing()) + " missing";
   return all;

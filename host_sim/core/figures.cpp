@@ -58,6 +58,10 @@ std::string filled(std::string_view pattern, const Json& figures) {
   }
 }
 
+std::string counted(std::uint64_t count, std::string_view one) {
+  return std::to_string(count).append(" ").append(one).append(count == 1 ? "" : "s");
+}
+
 void print(std::string_view pattern, const Json& figures) {
   std::cout << filled(pattern, figures);
 }

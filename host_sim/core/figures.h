@@ -2,6 +2,7 @@
 // sentences and tables are filled that people read.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -29,6 +30,9 @@ template <class... Figures>
 void print(std::string_view pattern, const Figures&... figures) {
   print(pattern, Json::array({Json(figures)...}));
 }
+
+/// "1 run", "2 runs"; of words whose plural ends in s.
+std::string counted(std::uint64_t count, std::string_view one);
 
 /// On standard output, as a result that programs read. A path need not be UTF-8, JSON must: what is
 /// wrong becomes U+FFFD.

@@ -30,8 +30,10 @@ herr_t collect(unsigned level, const H5E_error2_t* error, void* data) {
   Reason reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, collect, &reason);
   H5Eclear2(H5E_DEFAULT);
-  std::string text = reason.system.empty() ? reason.innermost : reason.system;
-  if (text.find("checksum") != std::string::npos) text = "the file is damaged (" + text + ")";
+  std::string text = reason.system;
+  // The library's own words are about its code, not about the user's file.
+  if (text.empty() && !reason.innermost.empty())
+    text = "the file is damaged (HDF5: " + reason.innermost + ")";
   throw Hdf5Failure(text.empty() ? std::string(what) : std::string(what) + ": " + text);
 }
 

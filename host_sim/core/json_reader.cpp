@@ -38,8 +38,8 @@ Json read_json_text(const std::string& text, const std::string& name) {
     return Json::parse(text, true);
   } catch (const JsonSyntaxError& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-    throw InputError(name + ":" + std::to_string(1 + std::count(text.begin(), end, '\n')) +
-                     ": is no JSON");
+    throw InputError(name + ":" + std::to_string(1 + std::count(text.begin(), end, '\n')) + ": " +
+                     error.what());
   }
 }
 

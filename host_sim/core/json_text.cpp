@@ -33,9 +33,11 @@ class Json::Builder {
     drop_repeated(*open_.back()->content_.object);
     return close();
   }
-  bool parse_error(std::size_t byte, const std::string& /*token*/,
+  bool parse_error(std::size_t byte, const std::string& token,
                    const nlohmann::json::exception& error) {
-    throw JsonSyntaxError(error.what(), byte);
+    constexpr int kNumberOverflow = 406;  // the library's exception out_of_range.406
+    throw JsonSyntaxError(
+        error.id == kNumberOverflow ? token + " is too large for a number" : "is no JSON", byte);
   }
 
  private:

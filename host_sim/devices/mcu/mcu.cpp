@@ -8,6 +8,7 @@ extern "C" {
 #include <simavr/avr_uart.h>
 #include <simavr/sim_avr.h>
 #include <simavr/sim_elf.h>
+#include <simavr/sim_gdb.h>
 }
 
 #include <elf.h>
@@ -304,7 +305,18 @@ double Mcu::time_ms() const {
 }
 
 bool Mcu::alive() const {
-  return avr_->state == cpu_Running || avr_->state == cpu_Sleeping;
+  // With a debugger the processor stops between two instructions, and is no less alive.
+  const bool stopped =
+      avr_->state == cpu_Stopped || avr_->state == cpu_Step || avr_->state == cpu_StepDone;
+  return avr_->state == cpu_Running || avr_->state == cpu_Sleeping ||
+         (stopped && avr_->gdb != nullptr);
+}
+
+void Mcu::wait_for_debugger(int port) {
+  avr_->gdb_port = port;
+  if (avr_gdb_init(avr_) != 0)
+    throw RunError("--gdb " + std::to_string(port) + ": the port cannot be listened on");
+  avr_->state = cpu_Stopped;
 }
 
 void Mcu::request_stop() {

@@ -86,6 +86,9 @@ class Mcu {
   /// program has crashed or stopped, or request_stop() is called. Returns false after
   /// request_stop().
   bool run_to(std::uint64_t cycle);
+  /// Before the next instruction the program waits for a debugger (avr-gdb, target remote :PORT),
+  /// which from then on stops and continues it. Throws RunError when the port is taken.
+  void wait_for_debugger(int port);
   /// To be called from a callback: run_to() returns after the present instruction.
   void request_stop();
   /// Runs for a time of the simulated clock.

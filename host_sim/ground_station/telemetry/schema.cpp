@@ -75,14 +75,36 @@ const char* SignalInfo::value_name(int64_t raw) const {
   return nullptr;
 }
 
-std::string SignalInfo::text(int64_t raw) const {
-  const char* const named = value_name(raw);
-  if (named != nullptr) return named;
-  const int64_t number = raw * scale + offset;
+namespace {
+
+/// number / 10^decimals, with all its digits.
+std::string decimal_text(int64_t number, size_t decimals) {
   std::string digits = std::to_string(std::abs(number));
   if (digits.size() <= decimals) digits.insert(0, decimals + 1U - digits.size(), '0');
   if (decimals > 0) digits.insert(digits.size() - decimals, ".");
   return (number < 0 ? "-" : "") + digits;
+}
+
+}  // namespace
+
+std::string SignalInfo::text(int64_t raw) const {
+  const char* const named = value_name(raw);
+  return named != nullptr ? named : decimal_text(raw * scale + offset, decimals);
+}
+
+std::string SignalInfo::shown(int64_t raw) const {
+  std::string shown = text(raw);
+  if (value_name(raw) == nullptr) {
+    size_t kept = decimals;
+    int64_t step = 1;  // in the last digit that is kept; at most as large as the signal's
+    for (; kept > 0 && step * 10 <= scale; --kept) step *= 10;
+    const int64_t number = raw * scale + offset;
+    const int64_t half = number < 0 ? -step / 2 : step / 2;
+    shown = decimal_text((number + half) / step, kept);
+  }
+  if (unit[0] == '\0') return shown;
+  const bool several = std::string_view(unit) == "count" && shown != "1";
+  return shown.append(" ").append(unit).append(several ? "s" : "");
 }
 
 const SignalInfo* MessageInfo::signal(std::string_view wanted) const {

@@ -50,6 +50,9 @@ struct SignalInfo {
   [[nodiscard]] const char* value_name(int64_t raw) const;
   /// As people read it: the name of the value, or the number with all its decimals; no unit.
   [[nodiscard]] std::string text(int64_t raw) const;
+  /// The same with as many decimals as the signal's steps have, and with its unit: "20.000 degC",
+  /// "1 count", "130 counts".
+  [[nodiscard]] std::string shown(int64_t raw) const;
 };
 
 struct MessageInfo {

@@ -182,9 +182,9 @@ std::vector<int> stack_counts(const HeightField& top, const BedExtent& extent, d
     }
   }
   if (sum < 1 || sum > kMaxParticles) {
-    throw InputError("particles: " + std::to_string(sum) + " of radius " +
-                     std::to_string(radius_m) + " m fit below this surface; allowed: 1 to " +
-                     std::to_string(kMaxParticles));
+    throw InputError("[map] particle_radius, [particles] depth: " + std::to_string(sum) +
+                     " particles of radius " + std::to_string(radius_m) +
+                     " m fit below this surface; allowed: 1 to " + std::to_string(kMaxParticles));
   }
   return counts;
 }

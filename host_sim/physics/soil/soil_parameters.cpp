@@ -144,15 +144,14 @@ void SoilOverrides::apply_to(SoilParameters& soil) const {
 
 void check_soil(const SoilParameters& soil) {
   const auto require = [](const char* name, double value, double min, double max) {
-    if (!(value >= min && value <= max)) {
-      throw InputError(std::string("soil: ") + name + " = " + std::to_string(value) +
-                       "; allowed is " + std::to_string(min) + " to " + std::to_string(max));
-    }
+    if (value >= min && value <= max) return;
+    throw InputError(std::string("[soil] ") + name + " = " + std::to_string(value) +
+                     "; allowed is " + std::to_string(min) + " to " + std::to_string(max));
   };
   for (const SoilParameterInfo& parameter : kSoilParameters)
     require(parameter.key, soil.*parameter.member, parameter.min, parameter.max);
   // A soil that carries nothing.
-  require("k_phi + k_c", soil.k_phi + soil.k_c, 1.0, 2e12);
+  require("k_phi + [soil] k_c", soil.k_phi + soil.k_c, 1.0, 2e12);
 }
 
 }  // namespace screed

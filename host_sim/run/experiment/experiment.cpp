@@ -2,7 +2,9 @@
 #include "host_sim/run/experiment/experiment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 #include <system_error>
 
 #include "hal/sample.h"
@@ -27,39 +29,6 @@ bool decides_nothing(const ExperimentKey& key, const MapSection& map) {
 
 std::string full_name(const std::string& section, const std::string& key) {
   return section.empty() ? key : "[" + section + "] " + key;
-}
-
-/// `where` names the entry's place in messages.
-void apply(Experiment& experiment, const IniEntry& entry, const std::string& where) {
-  const ExperimentKey& key = find_experiment_key(entry.section, entry.key, where);
-  if (!key.set(experiment, entry.value)) {
-    throw InputError(where + ": " + full_name(entry.section, entry.key) + " = '" + entry.value +
-                     "' is not allowed; expected " + key.allowed +
-                     (key.unit.empty() ? "" : " (" + key.unit + ")"));
-  }
-}
-
-/// Whether a file is one of the thesis' simulator: it says so, or it has the key that only those
-/// files have. Leaves a note.
-bool is_sandbox(const std::vector<IniEntry>& entries, const std::string& source,
-                Experiment& experiment) {
-  const auto find = [&](const char* key) {
-    return std::find_if(entries.begin(), entries.end(), [&](const IniEntry& entry) {
-      return entry.section.empty() && entry.key == key;
-    });
-  };
-  const auto units = find(kUnitsKey);
-  const auto chrono = find(kSandboxKey);
-  if (chrono == entries.end()) return units != entries.end() && units->value == "sandbox";
-  const std::string where = source + ":" + std::to_string(chrono->line) + ": ";
-  if (units != entries.end()) {
-    experiment.notes.push_back(where + kSandboxKey + " is not used");
-    return units->value == "sandbox";
-  }
-  experiment.notes.push_back(where + kSandboxKey +
-                             " is not used; with it the file counts as one of Sandbox: lengths in "
-                             "units of 1/12 m, y upwards ('units = si' says otherwise)");
-  return true;
 }
 
 /// An entry of a Sandbox file (thesis Figure 5.3) as one of ours: lengths from its unit of 1/12 m,
@@ -96,14 +65,53 @@ IniEntry from_sandbox(IniEntry entry) {
   return entry;
 }
 
+/// `where` names the entry's place in messages; `sandbox`: it is of a file of the thesis'
+/// simulator.
+void apply(Experiment& experiment, const IniEntry& written, const std::string& where,
+           bool sandbox = false) {
+  const IniEntry entry = sandbox ? from_sandbox(written) : written;
+  const ExperimentKey& key = find_experiment_key(entry.section, entry.key, where);
+  if (!key.set(experiment, entry.value)) {
+    throw InputError(where + ": " + full_name(entry.section, entry.key) + " = '" + entry.value +
+                     "' is not allowed; expected " + key.allowed +
+                     (key.unit.empty() ? "" : " (" + key.unit + ")") +
+                     (entry.value == written.value
+                          ? ""
+                          : "; written is '" + written.value + "' in Sandbox's units of 1/12 m"));
+  }
+  experiment.places[full_name(entry.section, entry.key)] = where;
+}
+
+/// Whether a file is one of the thesis' simulator: it says so, or it has the key that only those
+/// files have. Leaves a note.
+bool is_sandbox(const std::vector<IniEntry>& entries, const std::string& source,
+                Experiment& experiment) {
+  const auto find = [&](const char* key) {
+    return std::find_if(entries.begin(), entries.end(), [&](const IniEntry& entry) {
+      return entry.section.empty() && entry.key == key;
+    });
+  };
+  const auto units = find(kUnitsKey);
+  const auto chrono = find(kSandboxKey);
+  if (chrono == entries.end()) return units != entries.end() && units->value == "sandbox";
+  const std::string where = source + ":" + std::to_string(chrono->line) + ": ";
+  if (units != entries.end()) {
+    experiment.notes.push_back(where + kSandboxKey + " is not used");
+    return units->value == "sandbox";
+  }
+  experiment.notes.push_back(where + kSandboxKey +
+                             " is not used; with it the file counts as one of Sandbox: lengths in "
+                             "units of 1/12 m, y upwards ('units = si' says otherwise)");
+  return true;
+}
+
 /// The n of Algorithm 5, from frames or from the duration.
-void set_training_length(Experiment& experiment, const std::string& source) {
+void set_training_length(Experiment& experiment) {
   auto& frames = experiment.experiment.frames;
   if (!frames.has_value()) {
     const double wanted = std::floor(experiment.experiment.duration_s * kTickRate_hz / 8.0) * 8.0;
     if (wanted < 8.0 || wanted > kMaxFrames) {
-      throw InputError(source +
-                       ": [experiment] duration = " + shortest(experiment.experiment.duration_s) +
+      throw InputError("[experiment] duration = " + shortest(experiment.experiment.duration_s) +
                        " s: algorithm training_drive needs 0.08 s to " +
                        shortest(kMaxFrames / double{kTickRate_hz}) + " s");
     }
@@ -112,42 +120,42 @@ void set_training_length(Experiment& experiment, const std::string& source) {
   experiment.parameters.training_block() = static_cast<int16_t>(*frames / 8);
 }
 
-void check_robots(const Experiment& experiment, const std::string& source) {
+void check_robots(const Experiment& experiment) {
   const RobotsSection& robots = experiment.robots;
   if (robots.count == 1) return;
-  const std::string count = ": [robots] count = " + std::to_string(robots.count);
+  const std::string count = "[robots] count = " + std::to_string(robots.count);
   if (experiment.experiment.algorithm == kTrainingDriveName) {
-    throw InputError(source + count + ": algorithm " + kTrainingDriveName +
+    throw InputError(count + ": algorithm " + kTrainingDriveName +
                      " records one robot; allowed is 1");
   }
   if ((robots.placement == "list") == robots.places.empty()) {
-    throw InputError(source + count + ": places belong to placement = list, which needs them");
+    throw InputError(count + ": places belong to placement = list, which needs them");
   }
   if (robots.placement == "list" && places_in(robots.places)->size() != robots.count) {
-    throw InputError(source + count + ", but places has " +
+    throw InputError(count + ", but places has " +
                      std::to_string(places_in(robots.places)->size()));
   }
 }
 
-void check_parameters(const Parameters& p, const std::string& source) {
-  if (p.walk_speed_min() > p.walk_speed_max()) {
-    throw InputError(source +
-                     ": [parameters] walk_speed_min = " + std::to_string(p.walk_speed_min()) +
-                     " is above walk_speed_max = " + std::to_string(p.walk_speed_max()));
-  }
-  if (p.walk_leg_min() > p.walk_leg_max()) {
-    throw InputError(source + ": [parameters] walk_leg_min = " + std::to_string(p.walk_leg_min()) +
-                     " is above walk_leg_max = " + std::to_string(p.walk_leg_max()));
-  }
+/// section: where their keys stand.
+void check_parameters(const Parameters& p, const std::string& section) {
+  const auto check = [&section](const char* least, int low, const char* most, int high) {
+    if (low <= high) return;
+    throw InputError("[" + section + "] " + least + " = " + std::to_string(low) + " is above [" +
+                     section + "] " + most + " = " + std::to_string(high));
+  };
+  check("walk_speed_min", p.walk_speed_min(), "walk_speed_max", p.walk_speed_max());
+  check("walk_leg_min", p.walk_leg_min(), "walk_leg_max", p.walk_leg_max());
 }
 
 /// What robots have of their own.
-void check_robot_sections(const Experiment& experiment, const std::string& source) {
+void check_robot_sections(const Experiment& experiment) {
   for (const auto& [place, value] : experiment.of_robots) {
     const auto [robot, key] = place;
-    const std::string where = source + ": [" + section_of_robot(robot) + "]";
+    const std::string where = "[" + section_of_robot(robot) + "]";
     if (robot >= experiment.robots.count || experiment.robots.count == 1) {
-      throw InputError(where + ": [robots] count = " + std::to_string(experiment.robots.count) +
+      throw InputError(where + " " + experiment_keys()[key].name +
+                       ": [robots] count = " + std::to_string(experiment.robots.count) +
                        "; sections of robots are for those of several, from [robot_0] on");
     }
     const Experiment own = experiment_of_robot(experiment, robot);
@@ -155,26 +163,39 @@ void check_robot_sections(const Experiment& experiment, const std::string& sourc
       throw InputError(where + " algorithm = " + kTrainingDriveName +
                        ": that records one robot, alone");
     }
-    check_parameters(own.parameters, where);
+    check_parameters(own.parameters, section_of_robot(robot));
+  }
+}
+
+/// A note on each section with keys that were given for another kind of ground.
+void note_idle_sections(Experiment& experiment) {
+  std::set<std::string> noted;
+  for (const ExperimentKey& key : experiment_keys()) {
+    const auto place = experiment.places.find(full_name(key.section, key.name));
+    if (place == experiment.places.end() || key.name == "wall_friction") continue;
+    if (!decides_nothing(key, experiment.map) || !noted.insert(key.section).second) continue;
+    experiment.notes.push_back(
+        place->second + ": " + full_name(key.section, key.name) +
+        " and its like decide nothing with [map] model = " + experiment.map.model);
   }
 }
 
 /// What no single key can tell.
-void check(const Experiment& experiment, const std::string& source) {
-  check_robots(experiment, source);
-  check_robot_sections(experiment, source);
-  check_parameters(experiment.parameters, source);
+void check(const Experiment& experiment) {
+  check_robots(experiment);
+  check_robot_sections(experiment);
+  check_parameters(experiment.parameters, "parameters");
   if (!experiment.map.filename.empty() && experiment.map.ramp_deg != 0.0) {
-    throw InputError(source + ": [map] has both filename and ramp; a ramp needs no image");
+    throw InputError("[map] filename = '" + experiment.map.filename +
+                     "' and ramp are both given; a ramp needs no image");
   }
   if (experiment.map.ramp_deg != 0.0 && experiment.map.wrap()) {
-    throw InputError(source +
-                     ": [map] has both ramp and edges = wrap; a slope does not repeat: allowed are "
-                     "edges = open or walls");
+    throw InputError(
+        "[map] edges = wrap and ramp are both given; a slope does not repeat: allowed are edges = "
+        "open or walls");
   }
   if (experiment.map.of_particles() && experiment.map.edge() == BedEdge::kOpen) {
-    throw InputError(source +
-                     ": [map] edges = open: particles would roll off the bed; with model = " +
+    throw InputError("[map] edges = open: particles would roll off the bed; with model = " +
                      experiment.map.model + " edges = walls or wrap is allowed");
   }
 }
@@ -219,17 +240,19 @@ std::filesystem::path find_experiment(const std::filesystem::path& name) {
   const bool is_file =
       std::filesystem::exists(name, error) && !std::filesystem::is_directory(name, error);
   if (name.has_parent_path() || name.has_extension() || is_file) return name;
-  std::vector<std::string> names;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(data_folders().data / "experiments")) {
-    if (entry.path().extension() != ".ini") continue;
-    if (entry.path().stem() == name) return entry.path();
-    names.push_back(entry.path().stem().string());
+  const std::filesystem::path folder = data_folders().data / "experiments";
+  std::array<std::vector<std::string>, 2> names;  // experiments, recipes of sessions
+  for (const std::filesystem::path& entry : {folder, folder / "sessions"}) {
+    for (const auto& file : std::filesystem::directory_iterator(entry)) {
+      if (file.path().extension() != ".ini") continue;
+      if (file.path().stem() == name) return file.path();
+      names[entry == folder ? 0 : 1].push_back(file.path().stem().string());
+    }
   }
-  std::sort(names.begin(), names.end());
-  throw InputError(
-      name.string() +
-      ": no such file, and no experiment of that name comes with Screed: " + name_list(names));
+  for (std::vector<std::string>& of_folder : names) std::sort(of_folder.begin(), of_folder.end());
+  throw InputError(name.string() +
+                   ": no such file, and no experiment of that name comes with Screed: " +
+                   name_list(names[0]) + "; recipes of sessions: " + name_list(names[1]));
 }
 
 Experiment read_experiment(const std::filesystem::path& path,
@@ -265,18 +288,48 @@ Experiment make_experiment(const ExperimentFile& file, const std::vector<PlacedE
     experiment.particles.depth_m = 0.0;
   }
   for (const IniEntry& entry : file.entries)
-    apply(experiment, sandbox ? from_sandbox(entry) : entry,
-          source + ":" + std::to_string(entry.line));
+    apply(experiment, entry, source + ":" + std::to_string(entry.line), sandbox);
   // A pixel's width is a length; of particles the key is a share.
   if (sandbox && experiment.map.xy_scale.has_value() && !experiment.map.of_particles())
     *experiment.map.xy_scale /= kSandboxUnitsPerMetre;
   for (const PlacedEntry& placed : entries) apply(experiment, placed.entry, placed.where);
   experiment.parameters.algorithm() = algorithm_number(experiment.experiment.algorithm);
-  if (experiment.experiment.algorithm == kTrainingDriveName) set_training_length(experiment, whole);
-  if (experiment.experiment.frames.has_value())
-    experiment.experiment.duration_s = *experiment.experiment.frames / double{kTickRate_hz};
-  check(experiment, whole);
+  experiment.source = whole;
+  note_idle_sections(experiment);
+  try {
+    if (experiment.experiment.algorithm == kTrainingDriveName) set_training_length(experiment);
+    if (experiment.experiment.frames.has_value())
+      experiment.experiment.duration_s = *experiment.experiment.frames / double{kTickRate_hz};
+    check(experiment);
+  } catch (const InputError& error) {
+    throw with_place(experiment, error);
+  }
   return experiment;
+}
+
+std::string shipped_robots() {
+  std::vector<std::string> names = {"rover5"};  // of its board
+  for (const auto& entry : std::filesystem::directory_iterator(data_folders().data / "robots"))
+    names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return name_list(names);
+}
+
+InputError with_place(const Experiment& experiment, const InputError& error) {
+  constexpr const char* kNameCharacters = "abcdefghijklmnopqrstuvwxyz_0123456789";
+  const std::string text = error.what();
+  std::string where;
+  for (size_t at = text.find('['); at != std::string::npos && where.empty();
+       at = text.find('[', at + 1)) {
+    const size_t key = text.find("] ", at);
+    if (key == std::string::npos) break;
+    const size_t end = text.find_first_not_of(kNameCharacters, key + 2);
+    const auto place = experiment.places.find(text.substr(at, end - at));
+    if (place != experiment.places.end()) where = place->second + ": ";
+  }
+  if (where.empty() && text.starts_with('[') && !experiment.source.empty())
+    where = experiment.source + ": ";
+  return text.starts_with(where) ? error : InputError(where + text);
 }
 
 std::filesystem::path find_data_file(const Experiment& experiment, const std::string& name,
@@ -294,7 +347,10 @@ std::filesystem::path find_data_file(const Experiment& experiment, const std::st
     if (std::filesystem::exists(place, error)) return place;
     looked += (looked.empty() ? "" : ", ") + place.lexically_normal().string();
   }
-  throw InputError(std::string(key) + " = '" + name + "': no such file; looked for " + looked);
+  std::string text = std::string(key) + " = '" + name + "': no such file; looked for " + looked;
+  if (kind == std::string_view("robots"))
+    text += "; robots that come with Screed: " + shipped_robots();
+  throw with_place(experiment, InputError(text));
 }
 
 std::filesystem::path find_model_file(const Experiment& experiment, const std::string& board) {

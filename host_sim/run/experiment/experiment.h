@@ -59,6 +59,11 @@ struct Experiment {
   /// they look. Not part of text().
   std::vector<std::string> notes;
 
+  /// Where each key was given that was, by its full name: "[map] size", "e.ini:4". And what
+  /// messages call the whole. Not part of text().
+  std::map<std::string, std::string> places;
+  std::string source;
+
   /// Where the file stood: relative file names are looked for here first. Not part of text().
   std::filesystem::path folder = ".";
 
@@ -94,6 +99,10 @@ struct PlacedEntry {
 Experiment make_experiment(const ExperimentFile& file, const std::vector<PlacedEntry>& entries,
                            const std::string& whole);
 
+/// An error that names keys as "[map] size", with the place where the first of them was given; of
+/// keys that nobody gave, with that of the whole experiment.
+InputError with_place(const Experiment& experiment, const InputError& error);
+
 /// The robot's key and number of its start; without a key when the experiment says so.
 Credentials credentials_of(const Experiment& experiment);
 /// What the ground station signs with: the robot's key, or the test key.
@@ -101,6 +110,9 @@ CommandKey ground_key_of(const Experiment& experiment);
 
 /// The algorithm's number in the parameter table. Throws InputError for an unknown name.
 int16_t algorithm_number(const std::string& name);
+
+/// "four_wheels, rover5": for messages.
+std::string shipped_robots();
 
 /// Finds a file named in an experiment: as given when absolute, else beside the experiment file,
 /// else in the folder `kind` of the project's data. Throws InputError that lists where it looked.

@@ -314,6 +314,21 @@ int16_t algorithm_number(const std::string& name) {
   throw InputError("unknown algorithm '" + name + "'");
 }
 
+namespace {
+
+/// The sections that have a key of that name, in the words of the place where it was given.
+std::string elsewhere(const std::string& name, const std::string& where) {
+  std::string text;
+  for (const ExperimentKey& key : experiment_keys()) {
+    if (key.name != name || key.section.starts_with("robot_")) continue;
+    text += text.empty() ? "; did you mean " : " or ";
+    text += where == "--set" ? key.section + "." + name : "[" + key.section + "] " + name;
+  }
+  return text;
+}
+
+}  // namespace
+
 const ExperimentKey& find_experiment_key(const std::string& section, const std::string& name,
                                          const std::string& where) {
   const std::vector<ExperimentKey>& keys = keys_with(section);
@@ -332,7 +347,7 @@ const ExperimentKey& find_experiment_key(const std::string& section, const std::
   }
   throw InputError(where + ": unknown key '" + name + "'" +
                    (section.empty() ? " before the first section" : " in [" + section + "]") +
-                   "; known are " + names);
+                   elsewhere(name, where) + "; known are " + names);
 }
 
 }  // namespace screed

@@ -79,7 +79,17 @@ std::uint64_t frame_number(const SessionReader& session, const RunSceneOptions& 
   const auto count = static_cast<std::int64_t>(session.frames());
   if (count == 0) throw InputError(run.string() + ": no frame was recorded");
   const std::int64_t asked = options.frame.value_or(-1);
-  const std::int64_t frame = asked < 0 ? count + asked : asked;
+  std::int64_t frame = asked < 0 ? count + asked : asked;
+  if (options.at_s.has_value()) {
+    const double rate_hz = session.info().tick_rate_hz;
+    frame = std::llround(*options.at_s * rate_hz);
+    if (frame == count) --frame;  // the end of the run is the end of its last frame
+    if (frame >= count) {
+      throw InputError("--at = " + std::to_string(*options.at_s) +
+                       " is after the end: " + run.string() + " lasts " +
+                       std::to_string(static_cast<double>(count) / rate_hz) + " s");
+    }
+  }
   if (frame < 0 || frame >= count) {
     throw InputError("frame = " + std::to_string(asked) + "; " + run.string() +
                      " has frames 0 to " + std::to_string(count - 1));
@@ -164,7 +174,9 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
   const std::vector<SessionReader> robots = robots_of(run);
   const SessionReader& session = robots.front();
   if (!session.complete()) {
-    throw InputError(run.string() + ": the run did not end; only whole runs are drawn");
+    throw InputError(run.string() +
+                     (session.running() ? ": the run goes on" : ": the run did not end") +
+                     "; only whole runs are drawn");
   }
   RunSceneResult result;
   result.frame = frame_number(session, options, run);

@@ -14,6 +14,7 @@ namespace screed {
 
 struct RunSceneOptions {
   std::optional<std::int64_t> frame;  ///< from 0; negative counts from the end; none: the last
+  std::optional<double> at_s;         ///< in its place: the frame of this time
   CameraOrbit camera;
   std::optional<std::filesystem::path> model;  ///< the robot's URDF instead of the experiment's
   bool path = true;                            ///< draw the driven path

@@ -188,6 +188,7 @@ WorldSetup world_setup(const SimulationOptions& options) {
   WorldSetup setup;
   setup.board = options.board;
   setup.image = options.image;
+  setup.gdb_port = options.gdb_port;
   setup.ground_port = options.ground_port;
   setup.environment = options.environment;
   setup.progress = options.setup_progress;

@@ -43,6 +43,7 @@ struct SimulationOptions {
   /// The image that is to run under the microcontroller simulation; without it the firmware runs
   /// natively.
   std::optional<std::string> image;
+  std::optional<int> gdb_port;  ///< where it waits for a debugger (world_setup.h)
   /// Makes what the robot is driven in, in place of physics; may be empty.
   EnvironmentFactory environment;
   /// Side of a cell of deformable ground in that environment, m: an experiment with finer ones runs

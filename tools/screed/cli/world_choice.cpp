@@ -41,7 +41,10 @@ void choose_world(const WorldChoice& choice, SimulationOptions& options) {
     options.image = choice.elf.value_or(default_image(options.board));
   } else if (choice.elf.has_value()) {
     throw InputError("--elf needs --hal mcu");
+  } else if (choice.gdb_port.has_value()) {
+    throw InputError("--gdb needs --hal mcu");
   }
+  options.gdb_port = choice.gdb_port;
   if (choice.model.has_value() && choice.hal != "surrogate") {
     throw InputError("--model needs --hal surrogate");
   }

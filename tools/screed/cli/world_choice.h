@@ -13,6 +13,7 @@ struct WorldChoice {
   std::string hal = "native";  ///< native, mcu or surrogate
   std::optional<std::string> board;
   std::optional<std::string> elf;          ///< for mcu; else the one of `make firmware`
+  std::optional<int> gdb_port;             ///< for mcu: where the image waits for a debugger
   std::optional<std::string> model;        ///< for surrogate: of a network in place of the stand-in
   std::optional<std::string> terrain_net;  ///< with model: what changes the ground
 };

@@ -43,14 +43,6 @@ struct CheckedModel {
   ModelReport report;
 };
 
-std::string shipped_robots() {
-  std::vector<std::string> names = {"rover5"};  // of its board
-  for (const auto& entry : fs::directory_iterator(data_folders().data / "robots"))
-    names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
-  return name_list(names);
-}
-
 void read_experiment_of(const fs::path& file, const std::string& board, CheckedModel& model) {
   model.experiment = read_experiment(file);
   model.file = find_model_file(model.experiment, board);
@@ -95,7 +87,11 @@ CheckedModel read_model(const ModelArguments& arguments) {
     }
     vehicle.wheel_links = arguments.wheel_links;
   }
-  model.robot = make_robot_model(model.experiment, arguments.board, model.file);
+  try {
+    model.robot = make_robot_model(model.experiment, arguments.board, model.file);
+  } catch (const InputError& error) {
+    throw with_place(model.experiment, error);
+  }
   const bool drive_is_given = given.extension() == ".ini";
   model.report = report_model(model.robot, vehicle_options(model.experiment, arguments.board),
                               !drive_is_given);
@@ -224,7 +220,7 @@ void print_model(const Json& json) {
   if (warnings.empty()) {
     print("no warnings\n");
   } else {
-    print(warnings.size() == 1 ? "{} warning\n" : "{} warnings\n", warnings.size());
+    print("{}\n", counted(warnings.size(), "warning"));
   }
 }
 

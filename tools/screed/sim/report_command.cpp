@@ -81,7 +81,10 @@ int report_run(const ReportOptions& options) {
       options, run.is_log() ? fs::path(file).replace_extension(".html") : folder / "report.html");
   const std::vector<SessionReader> sessions = open_robots(run.path());
   const SessionReader& session = sessions.front();
-  if (!session.complete()) std::cerr << "note: the recorded run did not end\n";
+  if (!session.complete()) {
+    std::cerr << (session.running() ? "note: the run goes on; this is what is saved so far\n"
+                                    : "note: the recorded run did not end\n");
+  }
   TaskBar bar(options.quiet);
   RunPageOptions page;
   page.built_page = built_page();
@@ -136,12 +139,15 @@ std::filesystem::path default_picture(const RenderOptions& options) {
   const std::filesystem::path run = options.run;
   const std::filesystem::path folder =
       std::filesystem::is_directory(run, error) ? run : run.parent_path();
-  const std::string frame =
-      options.scene.frame ? std::to_string(*options.scene.frame) : std::string("last");
+  const std::string frame = options.scene.frame  ? std::to_string(*options.scene.frame)
+                            : options.scene.at_s ? filled("{:g}s", *options.scene.at_s)
+                                                 : std::string("last");
   return folder / ("frame_" + frame + ".png");
 }
 
 int run_render(RenderOptions options) {
+  if (options.scene.frame.has_value() && options.scene.at_s.has_value())
+    throw InputError("--at and --frame: one of them says which frame");
   options.scene.camera = camera_orbit(options.camera);
   options.scene.path = !options.no_path;
   options.scene.tint = !options.no_tint;
@@ -207,6 +213,8 @@ void register_render_command(Command& root, Program& program) {
   add_number(command, "--frame", options.scene.frame,
              "Frame to render, from 0; negative counts from the end (default: the last)",
              {-1e9, 1e9});
+  add_number(command, "--at", options.scene.at_s,
+             "Time of the frame [simulated s], in place of --frame", {0.0, 1e6});
   command
       .add_option("--out", options.out,
                   "Output picture, .png or .jpg (default: RUN/frame_N.png); the scene, .pov, "

@@ -64,6 +64,7 @@ Json describe(const fs::path& file, const SessionReader& session) {
                {"training_first", training.first},
                {"training_frames", training.count},
                {"complete", session.complete()},
+               {"running", session.running()},
                {"content_hash", session.content_hash()},
                {"missing_columns", session.missing_columns()}};
   if (session.frames() > 0) {
@@ -104,7 +105,10 @@ void print_info(const Json& json) {
                                        : "{nx} x {ny}, {spacing_m} m, {changes} changes",
         heights);
   }
-  row("content hash", json["complete"].get<bool>() ? "{content_hash}" : "none: the run did not end",
+  row("content hash",
+      json["running"].get<bool>()    ? "none: the run goes on"
+      : json["complete"].get<bool>() ? "{content_hash}"
+                                     : "none: the run did not end",
       json);
   for (const Json& column : json["missing_columns"]) row("missing column", "{}", column);
 }
@@ -179,7 +183,7 @@ void export_all_pictures(const ExportArguments& arguments, std::span<const Sessi
                  "--heights and record keep them\n";
   } else {
     throw InputError(paths.file.string() +
-                     ": nothing to draw: the run did not end, and has no recorded heights");
+                     ": nothing to draw: the run has no end yet, and no recorded heights");
   }
   print("{}: {} pictures\n", paths.folder, count);
 }
@@ -204,7 +208,10 @@ int export_session(const ExportArguments& arguments) {
   const fs::path out =
       folders.make(arguments.out.has_value() ? fs::path(*arguments.out)
                                              : fs::absolute(file).parent_path() / "export");
-  if (!session.complete()) std::cerr << "note: the recorded run did not end\n";
+  if (!session.complete()) {
+    std::cerr << (session.running() ? "note: the run goes on; this is what is saved so far\n"
+                                    : "note: the recorded run did not end\n");
+  }
 
   TaskBar bar(false);
   if (arguments.csv) {
@@ -213,7 +220,7 @@ int export_session(const ExportArguments& arguments) {
                        arguments.all ? std::span<const Column>(kFrameColumns) : table_5_1_columns(),
                        range, csv, bar.progress());
     bar.clear();
-    print("{}: {} frames\n", csv, range.count);
+    print("{}: {}\n", csv, counted(range.count, "frame"));
   }
   if (arguments.leveling) {
     export_leveling_csv(leveling, out / "leveling.csv");

@@ -270,7 +270,8 @@ void register_sim_command(Command& root, Program& program) {
   auto [command, arguments] = add_subcommand<SimArguments>(
       root, program, "sim", "Run an experiment: the firmware drives in a simulated world", run_sim);
   add_batch_options(command, arguments.runs);
-  add_number(command, "--seed", arguments.seed, "Seed of the world; overrides [experiment] seed",
+  add_number(command, "--seed", arguments.seed,
+             "Seed of the world; overrides [experiment] seed, leaves [parameters] random_seed",
              kSeedRange);
   add_number(command, "--duration", arguments.duration_s,
              "Simulated time [s]; overrides [experiment] duration", {0.01, 1e6});
@@ -288,6 +289,9 @@ void register_sim_command(Command& root, Program& program) {
       .add_option("--elf", arguments.world.elf,
                   "ELF image for --hal mcu (default: the one of make firmware)")
       ->type_name("FILE");
+  add_number(command, "--gdb", arguments.world.gdb_port,
+             "Port at which the image of --hal mcu waits for avr-gdb (docs/development.md)",
+             {1, 65535});
   command
       .add_option("--model", arguments.world.model,
                   "Motion network for --hal surrogate (default: none, the closed form)")

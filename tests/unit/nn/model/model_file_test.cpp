@@ -101,6 +101,8 @@ TEST(ModelFile, RefusesWithFilePlaceAndWhatIsAllowed) {
             "1.79769e+308");
   EXPECT_EQ(refusal("\"seed\"", "\"sead\"").substr(0, 36), "m.json: 'sead' is not known; allowed");
   EXPECT_EQ(refusal("]\n}", "]"), "m.json:64: is no JSON");
+  EXPECT_EQ(refusal("\"half_range\":8.0", "\"half_range\":1e999"),
+            "m.json:11: 1e999 is too large for a number");
 }
 
 TEST(ModelFile, AWeightThatWasChangedShowsInTheGoldenVectors) {

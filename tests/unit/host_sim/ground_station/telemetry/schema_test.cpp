@@ -128,6 +128,15 @@ TEST(Schema, ValuesAndTexts) {
   EXPECT_EQ(pitch.text(-1234), "-12.34");
   EXPECT_EQ(pitch.text(-5), "-0.05");
   EXPECT_EQ(pitch.text(0), "0.00");
+  EXPECT_EQ(pitch.shown(-5), "-0.05 deg");
+  // Steps of 1/480 degC from 42.5 degC: 42.5 - 10800 / 480 = 20.00003600 with the schema's digits.
+  const SignalInfo& temperature = *find_signal("baro.temperature").signal;
+  EXPECT_EQ(temperature.text(-10800), "20.00003600");
+  EXPECT_EQ(temperature.shown(-10800), "20.000 degC");
+  EXPECT_EQ(temperature.shown(-20401), "-0.002 degC");
+  const SignalInfo& edges = *find_signal("encoders.left").signal;
+  EXPECT_EQ(edges.shown(1), "1 count");
+  EXPECT_EQ(edges.shown(130), "130 counts");
   const SignalInfo& pressure = *find_signal("BARO.pressure").signal;
   EXPECT_DOUBLE_EQ(pressure.value(1013 * 256 + 1), 101300.390625);
   EXPECT_EQ(pressure.text(UINT32_MAX), "1677721599.609375");

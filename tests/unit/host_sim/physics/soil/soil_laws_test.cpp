@@ -38,7 +38,7 @@ TEST(SoilParameters, EachIsAcceptedUpToItsEndsAndRefusedBeyond) {
     for (const double bad : {parameter.min - past, parameter.max + past, std::nan("")}) {
       soil.*parameter.member = bad;
       const std::string message = refusal(soil);
-      EXPECT_EQ(message.rfind(std::string("soil: ") + parameter.key + " = ", 0), 0U) << message;
+      EXPECT_EQ(message.rfind(std::string("[soil] ") + parameter.key + " = ", 0), 0U) << message;
       EXPECT_NE(message.find(std::to_string(parameter.max)), std::string::npos) << message;
     }
   }
@@ -47,7 +47,7 @@ TEST(SoilParameters, EachIsAcceptedUpToItsEndsAndRefusedBeyond) {
 TEST(SoilParameters, ASoilThatCarriesNothingIsRefused) {
   SoilParameters soil = soil_preset("viper");
   soil.k_phi = 0.0;
-  EXPECT_EQ(refusal(soil).rfind("soil: k_phi + k_c = ", 0), 0U) << refusal(soil);
+  EXPECT_EQ(refusal(soil).rfind("[soil] k_phi + [soil] k_c = ", 0), 0U) << refusal(soil);
   soil.k_c = 1.0;
   EXPECT_EQ(refusal(soil), "");
 }

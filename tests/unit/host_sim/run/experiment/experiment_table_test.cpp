@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/core/csv_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/run/experiment/csv_file.h"
 #include "host_sim/run/experiment/experiment_table.h"
 #include "tests/temp_folder.h"
 
@@ -181,7 +181,8 @@ TEST_F(ExperimentTable, AWrongHeadingIsRefusedWithWhatIsKnown) {
     EXPECT_EQ(refusal(text).rfind(with, 0), 0U) << refusal(text);
   };
   starts("\n# heading\nexperiment.name,vehicle.speed\nrow,1\n",
-         "t.csv:3: column 'vehicle.speed': unknown key 'speed' in [vehicle]; known are tracks, ");
+         "t.csv:3: column 'vehicle.speed': unknown key 'speed' in [vehicle]; did you mean "
+         "[drive] speed; known are tracks, ");
   starts(
       "experiment.name,robot.x\nrow,1\n",
       "t.csv:1: column 'robot.x': unknown section [robot]; known are [vehicle], [robots], [map], ");
@@ -212,8 +213,10 @@ TEST_F(ExperimentTable, AWrongRowIsRefusedWithLineNameAndColumn) {
   EXPECT_EQ(refusal("experiment.name,vehicle.x\na\n"),
             "t.csv:2: 1 cells; expected 2, as in the headings in line 1");
   // What several keys decide together names the row as well.
-  EXPECT_EQ(refusal("experiment.name,map.filename,map.ramp\na,hills.png,3\n"),
-            "t.csv:2: row 'a': [map] has both filename and ramp; a ramp needs no image");
+  EXPECT_EQ(
+      refusal("experiment.name,map.filename,map.ramp\na,hills.png,3\n"),
+      "t.csv:2: row 'a', column 'map.filename': [map] filename = 'hills.png' and ramp are both "
+      "given; a ramp needs no image");
   // What the command line says is not the row's fault.
   EXPECT_EQ(refusal("experiment.name,vehicle.x\na,1\n", {"vehicle.x=501"}),
             "--set: [vehicle] x = '501' is not allowed; expected a number -500..500 (m)");

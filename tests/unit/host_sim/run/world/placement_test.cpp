@@ -115,15 +115,20 @@ TEST_F(RobotSections, ComplaintsAreOfOneLine) {
   const std::string count = "[robots]\ncount = 2\n";
   EXPECT_EQ(complaint(count + "[robot_1]\nx = far\n"),
             ":4: [robot_1] x = 'far' is not allowed; expected a number -500..500 (m)");
+  EXPECT_EQ(complaint(count + "[robot_1]\nmodel = rover5\n")
+                .rfind(":4: unknown key 'model' in [robot_1]; did you mean [vehicle] model or "
+                       "[map] model; known "
+                       "are x, y, h, algorithm, speed, ",
+                       0),
+            0U);
   EXPECT_EQ(
-      complaint(count + "[robot_1]\nmodel = rover5\n")
-          .rfind(":4: unknown key 'model' in [robot_1]; known are x, y, h, algorithm, speed, ", 0),
-      0U);
-  EXPECT_EQ(complaint(count + "[robot_0]\nclimb_speed = 100\n"),
-            ":4: unknown key 'climb_speed' in [robot_0]; known are x, y, h");
-  EXPECT_EQ(complaint(count + "[robot_2]\nx = 1\n"),
-            ": [robot_2]: [robots] count = 2; sections of robots are for those of several, from "
-            "[robot_0] on");
+      complaint(count + "[robot_0]\nclimb_speed = 100\n"),
+      ":4: unknown key 'climb_speed' in [robot_0]; did you mean [parameters] climb_speed; known "
+      "are x, y, h");
+  EXPECT_EQ(
+      complaint(count + "[robot_2]\nx = 1\n"),
+      ":4: [robot_2] x: [robots] count = 2; sections of robots are for those of several, from "
+      "[robot_0] on");
   EXPECT_NE(complaint("[robot_0]\nx = 1\n").find("[robots] count = 1"), std::string::npos);
   for (const char* const section : {"[robot_64]", "[robot_01]", "[robot_]", "[robot_-1]"}) {
     EXPECT_EQ(complaint(count + section + "\nx = 1\n")
@@ -135,7 +140,7 @@ TEST_F(RobotSections, ComplaintsAreOfOneLine) {
       complaint(count + "[robot_1]\nalgorithm = training_drive\n").find("[robot_1] algorithm"),
       std::string::npos);
   EXPECT_EQ(complaint(count + "[robot_1]\nwalk_speed_min = 200\nwalk_speed_max = 100\n")
-                .rfind(": [robot_1]: [parameters] walk_speed_min = 200 is above", 0),
+                .rfind(":4: [robot_1] walk_speed_min = 200 is above [robot_1] walk_speed_max", 0),
             0U);
   EXPECT_EQ(complaint(count, {"robot_1.h=1000"}),
             "--set: [robot_1] h = '1000' is not allowed; expected a number -360..360 (deg)");

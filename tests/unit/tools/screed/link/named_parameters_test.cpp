@@ -177,7 +177,7 @@ TEST_F(ParameterFile, AMistakeIsNamedWithFileLineAndKey) {
   EXPECT_EQ(range.rfind(begin + "[parameters] tilt_limit = '1'", 0), 0U) << range;
   EXPECT_NE(refusal("[map]\nfilename = x.png\n").find("names no parameter"), std::string::npos);
   EXPECT_NE(refusal("[parameters]\nwalk_leg_min = 9000\nwalk_leg_max = 8000\n")
-                .find("is above walk_leg_max"),
+                .find("is above [parameters] walk_leg_max"),
             std::string::npos);
 }
 
