@@ -104,6 +104,43 @@ TEST(BenchmarkScore, HalfIsReachedWhereHalfOfTheBedsReachIt) {
   EXPECT_TRUE(std::isnan(score_benchmark(plan(), runs(), {}, "walk")[0].entries[1].half_time_s));
 }
 
+// Numbers without rounding: relief falls from 1/64 to just half of it, or to a little more.
+TEST(BenchmarkScore, JustHalfIsHalfOfTheReliefAndOfTheBeds) {
+  CampaignPlan four = plan();
+  four.settings.seeds = {1, 2, 3, 4};
+  // When half is reached, s, of four beds each of the walk and the spin on both courses; 0: never.
+  const double reached_s[16] = {60, 0,   0, 0,  //
+                                0,  180, 0, 120, 60, 0, 60, 60, 180, 60, 120, 180};
+  ValueTable results;
+  ValueTable table;
+  for (int run = 0; run < 16; ++run) {
+    results.add_row();
+    results.set("stopped_early", run == 2 || run == 3);
+    for (int minute = 0; minute < 4; ++minute) {
+      const double time_s = 60.0 * minute;
+      double share = 0.5625;
+      if (reached_s[run] > 0.0)
+        share = time_s < reached_s[run] ? 0.75 : time_s > reached_s[run] ? 0.25 : 0.5;
+      table.add_row();
+      table.set("run", run);
+      table.set("time", time_s);
+      table.set("relief", minute == 0 ? 0x1p-6 : 0x1p-6 * share);
+    }
+  }
+  const std::vector<CourseScore> courses = score_benchmark(four, results, table, "walk");
+  // One of four beds is no half of them.
+  EXPECT_EQ(courses[0].entries[0].halved, 1U);
+  EXPECT_TRUE(std::isnan(courses[0].entries[0].half_time_s));
+  EXPECT_EQ(courses[0].entries[0].ended_early, 2U);
+  // Two are, when the second one has it: of two, three or all four.
+  EXPECT_EQ(courses[0].entries[1].halved, 2U);
+  EXPECT_EQ(courses[0].entries[1].half_time_s, 180.0);
+  EXPECT_EQ(courses[1].entries[0].halved, 3U);
+  EXPECT_EQ(courses[1].entries[0].half_time_s, 60.0);
+  EXPECT_EQ(courses[1].entries[1].halved, 4U);
+  EXPECT_EQ(courses[1].entries[1].half_time_s, 120.0);
+}
+
 TEST(BenchmarkScore, TimesTheBaselineIsOfMeansOverTheSameBeds) {
   // The spin takes 10, 20, 30 %, the other 5, 10, nothing known; of three beds the last is left
   // out.

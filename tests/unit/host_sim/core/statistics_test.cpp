@@ -84,6 +84,23 @@ TEST(PairedStatistics, TheIntervalOfTheMeanIsSciPys) {
   EXPECT_NEAR(skewed.high, 4.28, 0.25);
 }
 
+TEST(PairedStatistics, TheIntervalIsCorrectedForTheBiasOfItsSamples) {
+  // BCa by the exact distribution of all 8^8 samples: z0 is 0.1535. Without it the ends would
+  // be 19.9 and 388.1, with one of the two places that it stands in, 24.1 and 408.4 or 25.6 and
+  // 400.5.
+  const Interval powers = bootstrap_mean_interval({0, 1, 3, 9, 27, 81, 243, 729});
+  EXPECT_NEAR(powers.low, 32.0, 3.0);
+  EXPECT_NEAR(powers.high, 428.6, 8.0);
+}
+
+// Of samples that are as the values are, half count as below. Exactly, of 10^10 samples: 0.2 to
+// 0.8; if all of them counted, 0.3 to 0.9, if none did, 0.1 to 0.7.
+TEST(PairedStatistics, EqualSamplesAreHalfBelow) {
+  const Interval interval = bootstrap_mean_interval({0, 0, 0, 0, 0, 1, 1, 1, 1, 1});
+  EXPECT_DOUBLE_EQ(interval.low, 0.2);
+  EXPECT_DOUBLE_EQ(interval.high, 0.8);
+}
+
 TEST(PairedStatistics, TheIntervalHoldsTheMeanInNineteenOfTwenty) {
   // 20 values of a known distribution, 500 times; BCa of 20 covers some 93 per cent.
   int held = 0;

@@ -151,6 +151,44 @@ TEST(RobotScale, APlaneHasNoReliefAndKeepsItsSlope) {
   EXPECT_EQ(robot_scale_figures(ramp, 4.99).flatness, 0.0);
 }
 
+// Slopes of 3 and 4 per cent along the axes are one of 5 per cent, 2.862 degrees, whichever way
+// they fall.
+TEST(RobotScale, APlaneIsAsSteepAsBothItsSlopesTogether) {
+  for (const double slope_x : {0.03, -0.03}) {
+    for (const double slope_y : {0.04, -0.04}) {
+      const HeightField plane = HeightField::from_function(
+          101, 51, 0.01, false, [&](double x, double y) { return slope_x * x + slope_y * y; });
+      EXPECT_EQ(robot_scale_figures(plane, 2.87).flatness, 1.0) << slope_x << " " << slope_y;
+      EXPECT_EQ(robot_scale_figures(plane, 2.85).flatness, 0.0) << slope_x << " " << slope_y;
+      // Uniform along each axis: (slope L)^2 / 12 of each.
+      const double expected = std::hypot(0.03 * 1.0, 0.04 * 0.5) / std::sqrt(12.0);
+      EXPECT_NEAR(robot_scale_figures(plane, 2.87).level_deviation_m, expected, 0.03 * expected);
+    }
+  }
+}
+
+// On a slant that a wave runs down, their slopes add, whichever way both go.
+TEST(RobotScale, AWaveOnASlantIsFlatWhereBothSlopesTogetherAre) {
+  constexpr double kAmplitude_m = 0.02;
+  constexpr double kLength_m = 1.0;
+  constexpr double kSlope = 0.05;
+  // The slope is kSlope + k cos, k = A g 2 pi / L: never below -limit, and within the limit where
+  // the cosine is (limit - kSlope) / k or less.
+  const double k = kAmplitude_m * gain(kLength_m) * 2.0 * pi / kLength_m;
+  const double limit = std::tan(kFlat_deg * pi / 180.0);
+  const double expected = 1.0 - std::acos((limit - kSlope) / k) / pi;
+  for (const double way_deg : {0.0, 45.0, 90.0, 135.0}) {
+    const double c = std::cos(way_deg * pi / 180.0);
+    const double s = std::sin(way_deg * pi / 180.0);
+    const HeightField field =
+        HeightField::from_function(201, 201, 0.02, false, [&](double x, double y) {
+          const double at = c * x + s * y;
+          return kSlope * at + kAmplitude_m * std::sin(2.0 * pi * at / kLength_m);
+        });
+    EXPECT_NEAR(robot_scale_figures(field, kFlat_deg).flatness, expected, 0.02) << way_deg;
+  }
+}
+
 TEST(RobotScale, AStepBecomesAnErrorFunction) {
   // A bed of two levels that repeats: the low-pass leaves erf(x / (sigma sqrt 2)) at each step. On
   // a bed much longer than sigma the mean square of what it takes away is 2 steps of h^2 / 4 x

@@ -65,10 +65,24 @@ class FakeRobot : public Link {
         std::count_if(sent.begin(), sent.end(), [&](const CanFrame& f) { return f.id == id; }));
   }
 
+  /// What it has said and nobody has heard yet is lost.
+  void lose_answers() { out_.clear(); }
+  /// Its answer to a command with this number, whether or not there was one.
+  void answer(CommandOp op, uint8_t number, Result result) {
+    message::CommandAck ack{};
+    ack.op = static_cast<uint8_t>(op);
+    ack.freshness = number;
+    ack.result = static_cast<uint8_t>(result);
+    say(ack);
+  }
+  /// The next bit error hits what it said last.
+  void damage_answer() { out_.back().data[out_.back().size - 1] ^= 1U; }
+
   uint64_t now_us = 0;
   bool silent = false;
-  int lose = 0;  ///< this many of the next frames
-  int busy = 0;  ///< this many commits are answered "busy"
+  int lose = 0;         ///< this many of the next frames
+  int lose_values = 0;  ///< this many values of parameters
+  int busy = 0;         ///< this many commits are answered "busy"
   int done = 0;
   std::vector<CanFrame> sent;
   int32_t parameter = 42;
@@ -86,7 +100,7 @@ class FakeRobot : public Link {
     const auto op = static_cast<CommandOp>(frame.data[0]);
     if (op == CommandOp::kRun) return Result::kWrongState;
     if (op == CommandOp::kParameterRead) {
-      say(message::ParamValue{get_u16(frame.data + 1), parameter});
+      if (lose_values-- <= 0) say(message::ParamValue{get_u16(frame.data + 1), parameter});
     }
     if (op == CommandOp::kParameterCommit) {
       if (busy-- > 0) return Result::kBusy;
@@ -163,8 +177,25 @@ TEST(CommandSessionOfTwo, IsNotReadyByTheOtherRobotsHeartbeat) {
 
 class CommandSessionTest : public ::testing::Test {
  protected:
+  /// Until the robot is heard.
+  void hear() {
+    while (!session_.ready()) step();
+  }
+  void step() { session_.pump(std::chrono::milliseconds(20)); }
+  /// Of the command that was sent last.
+  uint8_t last_number() const {
+    const auto last = std::find_if(robot_.sent.rbegin(), robot_.sent.rend(),
+                                   [](const CanFrame& f) { return f.id == kIdCommand; });
+    return last->data[kCommandFreshnessOffset];
+  }
+
   FakeRobot robot_{test_key()};
-  CommandSession session_{robot_, {test_key(), true, {}, [this] { return robot_.now_us; }}};
+  /// Another ground station has the key too, and hears as much.
+  CommandSigner other_{test_key()};
+  CommandSession session_{
+      robot_,
+      {test_key(), true, [this](const LinkFrame& frame) { other_.handle_frame(frame.frame); },
+       [this] { return robot_.now_us; }}};
 };
 
 TEST_F(CommandSessionTest, ACommandWaitsForTheRobotsHeartbeatAndIsAnswered) {
@@ -243,6 +274,123 @@ TEST_F(CommandSessionTest, WhatOthersCommandedIsHeardOfTheRobotsAnswers) {
   EXPECT_EQ(robot_.sent_with(kIdCommand), 4U);
 }
 
+// A radio doubles packets: the first command's answer comes once more while the second one waits
+// for its own.
+TEST_F(CommandSessionTest, TheAnswerToAnEarlierCommandIsNotTakenForThisOnes) {
+  hear();
+  ASSERT_TRUE(session_.run(CommandOp::kArm).has_value());
+  const uint8_t first = last_number();
+  session_.start(CommandOp::kArm);
+  step();
+  EXPECT_EQ(last_number(), first + 1);
+  robot_.lose_answers();
+  robot_.answer(CommandOp::kArm, first, Result::kWrongState);
+  step();
+  EXPECT_TRUE(session_.waiting());
+  EXPECT_FALSE(session_.take_answer().has_value());
+  while (session_.waiting()) step();
+  const auto answer = session_.take_answer();
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_TRUE(answer->done());
+  EXPECT_EQ(robot_.done, 2) << "repeated, not signed anew";
+}
+
+TEST_F(CommandSessionTest, AnAnswerThatNobodyTookIsNotTheNextCommands) {
+  hear();
+  session_.start(CommandOp::kArm);
+  while (session_.waiting()) step();
+  session_.start(CommandOp::kDisarm);
+  EXPECT_FALSE(session_.take_answer().has_value());
+  while (session_.waiting()) step();
+  EXPECT_EQ(session_.take_answer().value_or(CommandAnswer{}).op,
+            static_cast<uint8_t>(CommandOp::kDisarm));
+  EXPECT_FALSE(session_.take_answer().has_value()) << "once";
+}
+
+TEST_F(CommandSessionTest, ADamagedAnswerIsNone) {
+  hear();
+  session_.start(CommandOp::kArm);
+  step();
+  robot_.lose_answers();
+  robot_.answer(CommandOp::kArm, last_number(), Result::kDone);
+  robot_.damage_answer();
+  step();
+  EXPECT_TRUE(session_.waiting());
+}
+
+TEST_F(CommandSessionTest, AfterItWasGivenUpNoAnswerCounts) {
+  hear();
+  session_.start(CommandOp::kArm);
+  step();  // sent; its answer is heard in the next step
+  session_.give_up();
+  step();
+  EXPECT_FALSE(session_.take_answer().has_value());
+}
+
+TEST_F(CommandSessionTest, ANewCommandGoesAtOnceAndARepetitionAfterThreeTenths) {
+  hear();
+  ASSERT_TRUE(session_.run(CommandOp::kArm).has_value());
+  const size_t before = robot_.sent_with(kIdCommand);
+  session_.start(CommandOp::kDisarm);
+  step();
+  EXPECT_EQ(robot_.sent_with(kIdCommand), before + 1);
+  robot_.lose_answers();
+  const uint64_t sent_us = robot_.now_us;
+  while (robot_.now_us < sent_us + 280'000) step();
+  EXPECT_EQ(robot_.sent_with(kIdCommand), before + 1);
+  step();
+  EXPECT_EQ(robot_.sent_with(kIdCommand), before + 2);
+}
+
+// Nothing but the refusal of its signature says that the number is gone.
+TEST_F(CommandSessionTest, WhereTheOthersAnswerIsLostItIsSignedAnew) {
+  hear();
+  robot_.send(other_.sign(CommandOp::kDisarm));
+  robot_.lose_answers();
+  const auto answer = session_.run(CommandOp::kArm);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_TRUE(answer->done());
+  EXPECT_EQ(robot_.done, 2);
+}
+
+// Its own is lost, the other's of that number and a later one are taken: it is signed anew at once,
+// not refused first.
+TEST_F(CommandSessionTest, WhereOthersAnswersSayThatItsNumberIsGoneItIsSignedAnewAtOnce) {
+  hear();
+  for (const int others : {1, 2}) {
+    robot_.lose = 1;
+    session_.start(CommandOp::kArm);
+    step();
+    const size_t before = robot_.sent_with(kIdCommand);
+    const uint8_t first = last_number();
+    for (int i = 0; i < others; ++i) {
+      robot_.lose_answers();
+      robot_.send(other_.sign(CommandOp::kDisarm));
+    }
+    const uint8_t taken = last_number();
+    EXPECT_EQ(taken, first + others - 1);
+    step();
+    EXPECT_EQ(robot_.sent_with(kIdCommand), before + static_cast<size_t>(others) + 1) << others;
+    EXPECT_EQ(last_number(), taken + 1) << others;
+    while (session_.waiting()) step();
+    EXPECT_TRUE(session_.take_answer().value_or(CommandAnswer{0, 1, 0}).done());
+  }
+}
+
+// It was taken, its answer is lost; signed anew it would be done twice.
+TEST_F(CommandSessionTest, ARefusedSignatureOfSomebodyElseChangesNothing) {
+  hear();
+  session_.start(CommandOp::kArm);
+  step();
+  EXPECT_EQ(robot_.done, 1);
+  const uint8_t number = last_number();
+  robot_.lose_answers();
+  robot_.answer(CommandOp::kDisarm, number, Result::kBadMac);
+  while (session_.waiting()) step();
+  EXPECT_EQ(last_number(), number);
+  EXPECT_EQ(robot_.done, 1);
+}
+
 TEST_F(CommandSessionTest, SilenceEndsAfterAWhile) {
   robot_.silent = true;
   EXPECT_FALSE(session_.run(CommandOp::kArm).has_value());
@@ -295,6 +443,73 @@ TEST_F(CommandSessionTest, AStagingThatIsLostIsSentAgain) {
   ASSERT_TRUE(answer.has_value());
   EXPECT_TRUE(answer->done());
   EXPECT_EQ(robot_.parameter, 1000);
+}
+
+// Staging and commit are lost together, and no refusal tells.
+TEST_F(CommandSessionTest, AStagingGoesBeforeEachRepetitionOfItsCommit) {
+  hear();
+  session_.start_write(3, 1000);
+  robot_.lose = 2;
+  while (session_.waiting()) step();
+  const auto answer = session_.take_answer();
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_TRUE(answer->done());
+  EXPECT_EQ(robot_.parameter, 1000);
+  EXPECT_EQ(robot_.sent_with(kIdParamStage), 2U);
+  EXPECT_EQ(robot_.sent_with(kIdCommand), 2U);
+  // And before no other command.
+  ASSERT_TRUE(session_.run(CommandOp::kArm).has_value());
+  EXPECT_EQ(robot_.sent_with(kIdParamStage), 2U);
+}
+
+TEST_F(CommandSessionTest, AParameterThatIsNoneIsStagedThreeTimes) {
+  hear();
+  // No index beyond 255 fits into the commit.
+  const auto answer = session_.write_parameter(0x103, 1);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->result, static_cast<uint8_t>(Result::kBadArgument));
+  EXPECT_EQ(robot_.sent_with(kIdParamStage), 3U);
+  EXPECT_EQ(robot_.sent_with(kIdCommand), 3U);
+}
+
+// It stores a parameter for 2 s.
+TEST_F(CommandSessionTest, ABusyRobotIsAskedForLongerThanItStores) {
+  hear();
+  robot_.busy = 1000;
+  const uint64_t begin_us = robot_.now_us;
+  const auto answer = session_.write_parameter(3, 1);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->result, static_cast<uint8_t>(Result::kBusy));
+  EXPECT_GT(robot_.now_us, begin_us + 3'000'000);
+  EXPECT_LT(robot_.now_us, begin_us + 6'000'000);
+}
+
+TEST_F(CommandSessionTest, AValueThatIsLostIsReadAgainNotRemembered) {
+  std::optional<CommandAnswer> answer;
+  EXPECT_EQ(session_.read_parameter(3, answer), 42);
+  robot_.parameter = 43;
+  robot_.lose_values = 1;
+  EXPECT_EQ(session_.read_parameter(3, answer), 43);
+  robot_.lose_values = 1000;
+  EXPECT_FALSE(session_.read_parameter(3, answer).has_value());
+  EXPECT_TRUE(answer.has_value() && answer->done()) << "it did answer";
+}
+
+TEST_F(CommandSessionTest, AfterTheEmergencyStopNothingIsRepeatedOrAnswered) {
+  hear();
+  session_.start(CommandOp::kArm);
+  while (session_.waiting()) step();
+  session_.emergency_stop();
+  EXPECT_FALSE(session_.take_answer().has_value());
+  robot_.lose = 1;
+  session_.start(CommandOp::kRun);
+  step();
+  const size_t before = robot_.sent_with(kIdCommand);
+  session_.emergency_stop();
+  EXPECT_FALSE(session_.waiting());
+  const uint64_t begin_us = robot_.now_us;
+  while (robot_.now_us < begin_us + 1'000'000) step();
+  EXPECT_EQ(robot_.sent_with(kIdCommand), before);
 }
 
 TEST_F(CommandSessionTest, TheEmergencyStopNeedsNoRobot) {

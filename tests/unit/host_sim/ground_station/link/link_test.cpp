@@ -228,6 +228,77 @@ TEST(XbeeApi, FramesOfTheManualAreUnderstood) {
   EXPECT_EQ(parser.refused(), 0U);
 }
 
+// Digi's user guide, frames 0x89 and 0x8B: a status of 0 is success; the other bytes say nothing of
+// it.
+TEST(XbeeApi, ATransmitStatusIsReadFromItsOwnByte) {
+  // Frame id, address of 16 bits, retries, delivery status, discovery status.
+  const auto status = [](std::vector<uint8_t> content) {
+    return delivered({XbeeFrameType::kTransmitStatus, std::move(content)});
+  };
+  EXPECT_EQ(status({0x01, 0x7D, 0x84, 0x03, 0x00, 0x01}), true)
+      << "after three retries and a search";
+  EXPECT_EQ(status({0x01, 0x00, 0x00, 0x00, 0x21, 0x00}), false)
+      << "no acknowledgement by the network";
+  EXPECT_EQ(status({0x00, 0xFF, 0xFE, 0x00, 0x02, 0x00}), false) << "the channel was never free";
+  EXPECT_EQ(status({0x01, 0x7D, 0x84, 0x00, 0x00}), std::nullopt) << "cut";
+  // Frame id, status.
+  const auto plain = [](std::vector<uint8_t> content) {
+    return delivered({XbeeFrameType::kTransmitStatusPlain, std::move(content)});
+  };
+  EXPECT_EQ(plain({0x01, 0x00}), true);
+  EXPECT_EQ(plain({0x00, 0x01}), false) << "no acknowledgement";
+  EXPECT_EQ(plain({0x01}), std::nullopt);
+  EXPECT_EQ(delivered({XbeeFrameType::kReceive, {0, 0, 0, 0, 0, 0}}), std::nullopt);
+}
+
+// Frame id, the command's two letters, status, value: the guide's frame 0x88.
+TEST(XbeeApi, OnlyAGoodAnswerToDbIsAnRssi) {
+  const auto rssi_dbm = [](std::vector<uint8_t> content) {
+    return answered_rssi_dbm({XbeeFrameType::kCommandResponse, std::move(content)});
+  };
+  EXPECT_EQ(rssi_dbm({0x00, 'D', 'B', 0, 0x1C}), -28);
+  EXPECT_EQ(rssi_dbm({0x01, 'D', 'B', 1, 0x1C}), std::nullopt) << "an error";
+  EXPECT_EQ(rssi_dbm({0x01, 'D', 'L', 0, 0x1C}), std::nullopt);
+  EXPECT_EQ(rssi_dbm({0x01, 'E', 'B', 0, 0x1C}), std::nullopt);
+  EXPECT_EQ(rssi_dbm({0x01, 'D', 'B', 0}), std::nullopt) << "no value";
+  EXPECT_EQ(answered_rssi_dbm({XbeeFrameType::kReceive, {0x00, 'D', 'B', 0, 0x1C}}), std::nullopt);
+}
+
+TEST(XbeeApi, AddressAndDataStandWhereTheGuideHasThem) {
+  // 0x80: address of 64 bits, RSSI, options. 0x91: two addresses, endpoints, cluster, profile,
+  // options.
+  const auto far =
+      received_packet({XbeeFrameType::kReceive64,
+                       {0, 0x13, 0xA2, 0, 0x40, 0x52, 0x2B, 0xAA, 0x3C, 0x00, 'a', 'b'}});
+  ASSERT_TRUE(far.has_value());
+  EXPECT_EQ(far->source.address, 0x0013A20040522BAAU);
+  EXPECT_EQ(far->source.rssi_dbm, -60);
+  EXPECT_EQ(far->data, text("ab"));
+  const auto explicit_one = received_packet({XbeeFrameType::kReceiveExplicit,
+                                             {0, 0x13, 0xA2, 0, 0x40, 0x52, 0x2B, 0xAA, 0x7D, 0x84,
+                                              0xE0, 0xE0, 0x22, 0x11, 0xC1, 0x05, 0x02, 'c'}});
+  ASSERT_TRUE(explicit_one.has_value());
+  EXPECT_EQ(explicit_one->source.address, 0x0013A20040522BAAU);
+  EXPECT_FALSE(explicit_one->source.rssi_dbm.has_value());
+  EXPECT_EQ(explicit_one->data, text("c"));
+}
+
+// Zigbee's 0x10: frame id, 64-bit broadcast, 16-bit "unknown", radius, options. 802.15.4's 0x00:
+// frame id, broadcast, options. No frame id, no status that nobody waits for.
+TEST(XbeeApi, RequestsAreLaidOutAsTheGuideSays) {
+  const std::vector<uint8_t> data = text("t0010\r");
+  const auto with_data = [&data](std::vector<uint8_t> head) {
+    head.insert(head.end(), data.begin(), data.end());
+    return head;
+  };
+  const XbeeFrame zigbee = broadcast_request(data, XbeeFrameType::kReceive);
+  EXPECT_EQ(zigbee.type, static_cast<XbeeFrameType>(0x10));
+  EXPECT_EQ(zigbee.content, with_data({0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFE, 0, 0}));
+  const XbeeFrame plain = broadcast_request(data, XbeeFrameType::kReceive16);
+  EXPECT_EQ(plain.type, static_cast<XbeeFrameType>(0x00));
+  EXPECT_EQ(plain.content, with_data({0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 0}));
+}
+
 TEST(XbeeApi, EscapedFramesOfTheManual) {
   // The user guide's own example of mode 2: a remote AT command of two bytes, 0x23 0x11.
   const XbeeFrame frame = {static_cast<XbeeFrameType>(0x23), {0x11}};
@@ -296,6 +367,13 @@ TEST_F(LinkTest, RobotsBehindOneRadioAreToldApart) {
   EXPECT_EQ(frames[1].source->address, 2U);
   EXPECT_EQ(frames[1].frame.id, 0x220);
   EXPECT_EQ(link.status().rssi_dbm, -70);
+
+  // What the module could not deliver is an error; what it could, none.
+  device.write(encode_xbee({XbeeFrameType::kTransmitStatusPlain, {1, 0}}, XbeeApiMode::kEscaped));
+  device.write(encode_xbee({XbeeFrameType::kTransmitStatusPlain, {1, 1}}, XbeeApiMode::kEscaped));
+  packet(1, 40, "t2103AABBCC\r");
+  frames_of(link);
+  EXPECT_EQ(link.status().errors, 1U);
 
   // Answers go out in the kind of request these modules understand.
   EXPECT_TRUE(link.send({0x001, 0, {}}));

@@ -44,6 +44,44 @@ TEST(RobotHistory, LostFramesAreCountedByTheAliveCounter) {
   EXPECT_NEAR(robot->frames_per_s(time_us), 22.5, 1.0);
 }
 
+// The counter runs modulo 16, and each message has its own.
+TEST(RobotHistory, TheSameCounterAgainIsNoLossAndAGapIsOneOverItsEndToo) {
+  FleetView fleet;
+  uint64_t time_us = kStart_us;
+  const auto lost_after = [&](uint8_t counter) {
+    return fleet.add_frame(frame_with(attitude(0, 0), counter, time_us += 40'000))->lost();
+  };
+  EXPECT_EQ(lost_after(14), 0U) << "nothing is known of what came before the first";
+  EXPECT_EQ(lost_after(14), 0U) << "a doubled frame, or a robot that restarted";
+  EXPECT_EQ(lost_after(15), 0U);
+  EXPECT_EQ(lost_after(0), 0U);
+  EXPECT_EQ(lost_after(2), 1U) << "1";
+  EXPECT_EQ(lost_after(1), 15U) << "3 to 15, and 0";
+  RobotHistory* const robot =
+      fleet.add_frame(frame_with(heartbeat(message::HeartbeatState::kDisarmed, 0), 9, time_us));
+  EXPECT_EQ(robot->lost(), 15U);
+  EXPECT_EQ(robot->frames(), 7U);
+  // 15 of 22 that were sent.
+  EXPECT_NEAR(robot->loss_percent(time_us).value_or(0.0), 100.0 * 15.0 / 22.0, 1e-9);
+}
+
+TEST(RobotHistory, LossesAreForgottenAfterTheWindowAndSamplesAfterTheHistory) {
+  FleetView fleet;
+  const SignalRef roll = find_signal("attitude.roll");
+  fleet.add_frame(frame_with(attitude(0, 0), 0, kStart_us));
+  // Five of seven are lost before the last of these, and none later.
+  RobotHistory* const robot = fleet.add_frame(frame_with(attitude(0, 0), 6, kStart_us + 1'000'000));
+  EXPECT_NEAR(robot->loss_percent(kStart_us + 1'000'000).value_or(0.0), 100.0 * 5.0 / 7.0, 1e-9);
+  const uint64_t late_us = kStart_us + 1'000'001 + RobotHistory::kWindow_us;
+  fleet.add_frame(frame_with(attitude(0, 0), 7, late_us));
+  EXPECT_EQ(robot->loss_percent(late_us), 0.0);
+  EXPECT_EQ(robot->lost(), 5U) << "of all time";
+  EXPECT_EQ(robot->curve(roll, late_us, 1e6).size(), 3U);
+  const uint64_t end_us = kStart_us + 1'000'000 + RobotHistory::kHistory_us;
+  fleet.add_frame(frame_with(attitude(0, 0), 8, end_us));
+  EXPECT_EQ(robot->curve(roll, end_us, 1e6).size(), 3U) << "without the first one";
+}
+
 TEST(RobotHistory, DamagedAndForeignFramesAreCountedAndNotShown) {
   FleetView fleet;
   LinkFrame damaged = frame_with(attitude(0, 0), 0, kStart_us);

@@ -101,6 +101,8 @@ TEST_F(Decode, CountersWrapWithoutALoss) {
   std::string text;
   for (int i = 0; i < 40; ++i) text += attitude_line(i, 0, static_cast<uint8_t>(i % 16));
   EXPECT_EQ(account_of(text).missing, 0U);
+  // From 3 to 2 are 14: 4 to 15, 0 and 1.
+  EXPECT_EQ(account_of(attitude_line(0.0, 0, 3) + attitude_line(1.0, 0, 2)).missing, 14U);
 }
 
 TEST_F(Decode, TablesHaveUnitsAndExactNumbers) {
