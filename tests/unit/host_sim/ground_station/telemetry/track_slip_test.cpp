@@ -101,6 +101,20 @@ TEST(TrackSlip, OfATurnItTellsTheTracksApart) {
   expect_slip({0.2, -0.2, -1.0}, 0.5, 0.5);
 }
 
+// A track that the ground carries farther than it runs brakes: negative, forward and backward, to
+// -1; one that is carried against its own way is above 1, to 1.5.
+TEST(TrackSlip, OfATrackThatBrakesItIsNegative) {
+  // The middle makes 0.2 m/s, the tracks' middles 0.2 -+ 0.025.
+  expect_slip({0.15, 0.25, 0.25}, 1.0 - 0.175 / 0.15, 1.0 - 0.225 / 0.25);
+  expect_slip({-0.15, -0.25, -0.25}, 1.0 - 0.175 / 0.15, 1.0 - 0.225 / 0.25);
+  // 0.3 m/s over the ground with a track of 0.1.
+  expect_slip({0.1, 0.5, 0.0}, -1.0, 1.0 - 0.3 / 0.5);
+  // 0.1 m/s straight on with the left track backward.
+  expect_slip({-0.1, 0.3, 0.0}, 1.5, 1.0 - 0.1 / 0.3);
+  // The middle of the left one makes -0.04 m/s, that runs at 0.1.
+  expect_slip({0.1, 0.3, 2.4}, 1.4, 1.0 - 0.44 / 0.3);
+}
+
 TEST(TrackSlip, CountsAndHeadingWrap) {
   expect_slip({0.3, 0.3, 0.0, 1.0, 0.0, 65'000}, 0.0, 0.0);
   expect_slip({0.1, 0.3, 1.0, 1.0, 5.3}, 0.0, 0.0);

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/physics/terrain/footprint_contact.h"
+
 namespace screed {
 namespace {
 
@@ -459,6 +461,25 @@ TEST(Footprint, AnOddNumberOfPlacesIsAnsweredAsAnEvenOne) {
   EXPECT_EQ(three.count, 3U);
   EXPECT_EQ(three.height[2], one.height[0]);
   EXPECT_EQ(three.share[2], one.share[0]);
+}
+
+// Slip has the sign of what the surface does to the body, whichever way both go.
+TEST(SignedSlip, IsPositiveDrivenAndNegativeBrakedForwardAndBackward) {
+  for (const double way : {1.0, -1.0}) {
+    const auto slip = [way](double surface, double ground) {
+      return signed_slip(way * surface, way * ground);
+    };
+    EXPECT_DOUBLE_EQ(slip(0.2, 0.2), 0.0) << way;
+    EXPECT_DOUBLE_EQ(slip(0.2, 0.15), 0.25) << way;
+    EXPECT_DOUBLE_EQ(slip(0.15, 0.2), -0.25) << way;
+    EXPECT_DOUBLE_EQ(slip(0.2, 0.0), 1.0) << way << ": on the spot";
+    EXPECT_DOUBLE_EQ(slip(0.0, 0.2), -1.0) << way << ": locked";
+    EXPECT_DOUBLE_EQ(slip(0.2, -0.05), 1.0) << way << ": it is carried the other way";
+    EXPECT_DOUBLE_EQ(slip(0.05, -0.2), 1.0) << way;
+    EXPECT_EQ(slip(0.001, -0.001), 0.0) << way << ": next to nothing moves";
+    EXPECT_EQ(slip(0.0011, 0.0), 1.0) << way;
+    EXPECT_EQ(slip(0.0, 0.0011), -1.0) << way;
+  }
 }
 
 }  // namespace

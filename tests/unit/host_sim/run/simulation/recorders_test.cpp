@@ -1,11 +1,14 @@
 // What is left of a run: session, path, folder, telemetry log.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "host_sim/core/errors.h"
 #include "host_sim/run/session/session_reader.h"
 #include "host_sim/run/simulation/recorders.h"
 #include "host_sim/run/simulation/run_files.h"
 #include "tests/temp_folder.h"
+#include "tests/unit/test_robot.h"
 
 namespace screed {
 
@@ -143,6 +146,76 @@ TEST_F(RunFilesTest, AFullDiskIsReportedWithTheLogsName) {
     EXPECT_STREQ(error.what(), "/dev/full: cannot be written completely; is the disk full?");
   }
   EXPECT_THROW(log.open(folder_.path() / "no" / "folder"), RunError);
+}
+
+// One tick as a session has it.
+
+/// A robot whose truth is what the test says.
+class ToldRobot : public RobotView, public VehicleState {
+ public:
+  ImuTruth motion() const override { return {}; }
+  void lay_on_side() override {}
+  const VehicleState& vehicle() const override { return *this; }
+  const std::array<int64_t, 2>& wrap_counts() const override { return wrap_counts_; }
+  Eigen::Vector3d unwrapped_position() const override { return place; }
+  const Battery& battery() const override { return battery_; }
+  ChassisState chassis() const override { return {}; }
+  double track_speed_m_per_s(Side side) const override { return track.at(side); }
+  double shaft_angle_rad(Side /*side*/) const override { return 0.0; }
+  double current_a(Side /*side*/) const override { return 0.0; }
+  double wheel_radius_m(Side /*side*/) const override { return 0.03; }
+  double load_n(Side /*side*/) const override { return 0.0; }
+  double sinkage_m(Side /*side*/) const override { return 0.0; }
+  double ground_speed_m_per_s(Side side) const override { return ground.at(side); }
+
+  std::array<double, 2> track{};
+  std::array<double, 2> ground{};
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+
+ private:
+  std::array<int64_t, 2> wrap_counts_{};
+  Battery battery_;
+};
+
+TEST(FrameRecorderTest, SlipIsThatOfEachTrackDrivenOrBrakedForwardOrBackward) {
+  FrameRecorder recorder;
+  const TestRobot firmware;
+  ToldRobot robot;
+  const auto expect_slip = [&](double left, double right) {
+    const SimFrame frame = recorder.record(0.0, robot, firmware.robot);
+    EXPECT_DOUBLE_EQ(frame.slip_left, left);
+    EXPECT_DOUBLE_EQ(frame.slip_right, right);
+    EXPECT_EQ(frame.track_left, robot.track[kLeft]);
+    EXPECT_EQ(frame.track_right, robot.track[kRight]);
+  };
+  for (const double way : {1.0, -1.0}) {
+    robot.track = {way * 0.2, way * 0.15};
+    robot.ground = {way * 0.15, way * 0.2};
+    expect_slip(0.25, -0.25);
+    // Spinning on the spot, and braked as hard; a track that the other one drags against its own way.
+    robot.track = {way * 0.2, way * 0.05};
+    robot.ground = {0.0, way * 0.2};
+    expect_slip(1.0, -0.75);
+    robot.track = {way * 0.2, way * 0.05};
+    robot.ground = {way * 0.2, way * -0.2};
+    expect_slip(0.0, 1.0);
+  }
+}
+
+TEST(FrameRecorderTest, TheWayIsTheSumOfItsStepsFromTheFirstFrameOn) {
+  FrameRecorder recorder;
+  const TestRobot firmware;
+  ToldRobot robot;
+  robot.place = {5.0, 0.0, 0.0};
+  recorder.record(0.0, robot, firmware.robot);
+  EXPECT_EQ(recorder.distance_m(), 0.0);
+  robot.place += Eigen::Vector3d(0.03, 0.04, 0.0);
+  const SimFrame frame = recorder.record(0.01, robot, firmware.robot);
+  EXPECT_NEAR(frame.delta_x, 0.03, 1e-12);
+  EXPECT_NEAR(frame.delta_y, 0.04, 1e-12);
+  robot.place -= Eigen::Vector3d(0.0, 0.0, 0.05);
+  recorder.record(0.02, robot, firmware.robot);
+  EXPECT_NEAR(recorder.distance_m(), 0.1, 1e-12);
 }
 
 }  // namespace
