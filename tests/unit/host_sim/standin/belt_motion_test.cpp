@@ -218,5 +218,67 @@ TEST_F(BeltMotionTest, WhatDoesNotTouchKeepsNothing) {
   EXPECT_LT(after.shear()[0].left_m, -0.3e-3) << "against the way that the robot goes";
 }
 
+// Front and rear end are each their own: on its rear third alone, and on its front third alone.
+TEST_F(BeltMotionTest, EitherEndOfTheContactIsItsOwn) {
+  const double third_m = 2.0 * tracks.half_length_m / kBeltPatches;
+  const FrameMotion aside{0.0, 1e-3, 0.0};
+  for (const bool at_rear : {true, false}) {
+    BeltSupport support = level_support(tracks);
+    if (at_rear) {
+      support.front.fill(-tracks.half_length_m + third_m);
+    } else {
+      support.rear.fill(tracks.half_length_m - third_m);
+    }
+    BeltMotion belt(tracks, soil);
+    for (int i = 0; i < 100; ++i) belt.follow(0.0, 0.0, support, aside);
+    const std::array<double, kBeltPatches> patch_m = belt.shear()[0].patch_m;
+    // All is mobilised where it touches, one frame's part where it does not.
+    EXPECT_GT(patch_m[at_rear ? 2 : 0], 0.9e-3) << at_rear;
+    EXPECT_LT(patch_m[1], 2e-3 / soil.shear_modulus_m * 1e-3) << at_rear;
+    EXPECT_LT(patch_m[at_rear ? 0 : 2], 2e-3 / soil.shear_modulus_m * 1e-3) << at_rear;
+  }
+}
+
+// Backward it is forward with its ends changed, sideways shear included.
+TEST_F(BeltMotionTest, BackwardIsForwardMirrored) {
+  BeltMotion backward(tracks, soil);
+  BeltSupport support = level_support(tracks);
+  support.load[0] = support.load[1] = {0.25, 0.15, 0.1};
+  support.rear.fill(-0.05);
+  BeltSupport mirrored = level_support(tracks);
+  mirrored.load[0] = mirrored.load[1] = {0.1, 0.15, 0.25};
+  mirrored.front.fill(0.05);
+  for (int i = 0; i < 60; ++i) {
+    belts.follow(0.2, 0.1, support, {0.001, 5e-4, 0.002});
+    backward.follow(-0.2, -0.1, mirrored, {-0.001, 5e-4, -0.002});
+  }
+  for (const std::size_t side : {0U, 1U}) {
+    const BeltShear one = belts.shear().at(side);
+    const BeltShear two = backward.shear().at(side);
+    EXPECT_NEAR(one.forward_m, -two.forward_m, 1e-15);
+    EXPECT_NEAR(one.left_m, two.left_m, 1e-15);
+    for (std::size_t i = 0; i < kBeltPatches; ++i)
+      EXPECT_NEAR(one.patch_m[i], two.patch_m[kBeltPatches - 1 - i], 1e-15) << i;
+    EXPECT_NEAR(belts.traction_n().at(side), -backward.traction_n().at(side), 1e-12);
+  }
+}
+
+// A belt that stands and is dragged: the ground moves over it, faster on the outside of the turn;
+// soil is sheared against the belt, backward as forward.
+TEST_F(BeltMotionTest, ALockedBeltHasMovedAsFarAsTheGroundBelowIt) {
+  for (const double way : {1.0, -1.0}) {
+    BeltMotion locked(tracks, soil);
+    for (int i = 0; i < 100; ++i)
+      locked.follow(0.0, 0.0, level_support(tracks), {way * 0.001, 0.0, way * 0.005});
+    const double wider = 0.005 * tracks.half_tread_m;
+    const auto [left, right] = locked.shear();
+    EXPECT_NEAR(left.moved_m, 0.001 - wider, 1e-12);
+    EXPECT_NEAR(right.moved_m, 0.001 + wider, 1e-12);
+    EXPECT_NEAR(right.slid_m, 0.001 + wider, 1e-12);
+    EXPECT_LT(way * right.forward_m, 0.0);
+    EXPECT_LT(way * locked.traction_n()[1], 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace screed
