@@ -1,17 +1,25 @@
 // The image that is flashed, on a simulated board: it boots, keeps its tick, reads its devices,
 // drives, and stays safe when devices fail.
 #include <gtest/gtest.h>
+#include <simavr/sim_avr.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <fstream>
 
 #include "firmware/robot/supervisor.h"
 #include "schema/class_values.h"
 #include "tests/mcu/bench.h"
+#include "tests/mcu/images.h"
 #include "tests/mcu/usb_host.h"
+#include "tools/avr/stack/disassembly.h"
 
 namespace screed::mcu {
 namespace {
 
+constexpr std::uint16_t kPinB = 0x23;
+constexpr std::uint64_t kMsCycles = kClock_hz / 1000;
 constexpr std::uint64_t kTickCycles = kClock_hz / kTickRate_hz;
 // Half of the tick is the most a tick may take, interrupts included.
 constexpr std::uint64_t kMaxBusyCycles = kTickCycles / 2;
@@ -32,6 +40,12 @@ RobotState state_of(const CanFrame& heartbeat) {
 
 std::int16_t value_at(const CanFrame& frame, std::size_t index) {
   return get_s16(&frame.data[kE2eHeaderSize + 2 * index]);
+}
+
+/// Runs on to where the next tick has just begun.
+void begin_tick(Bench& bench) {
+  const std::uint64_t now = bench.mcu.ticks();
+  while (bench.mcu.ticks() == now) bench.mcu.run_ms(0.01);
 }
 
 /// Armed and driving straight on.
@@ -231,6 +245,36 @@ TEST(ScreedImage, SurvivesAFloodOfEncoderEdges) {
       100);
 }
 
+// Deaf until the end of the tick, it counts on from the levels that it finds then: what has changed
+// meanwhile is lost, and neither a step nor an error.
+TEST(ScreedImage, AfterAFloodItCountsFromThePresentLevels) {
+  Bench bench;
+  bench.run_ms(300);
+  begin_tick(bench);
+  bench.mcu.run_ms(3.0);
+  const CanFrame before = bench.last_frame(kIdEncoders);
+  const int errors = bench.last_frame(kIdMotors).data[6];
+  const bool high = (bench.mcu.memory(kPinB) & 1U << 4U) != 0;
+  for (int i = 0; i < 100; ++i) {  // back where it was
+    bench.mcu.set_pin({'B', 4}, (i % 2 == 0) != high);
+    bench.mcu.run_ms(0.04);
+  }
+  bench.turn_left_encoder(true);
+  bench.turn_right_encoder(true);
+  begin_tick(bench);
+  bench.mcu.run_ms(3.0);
+  for (int i = 0; i < 3; ++i) {
+    bench.turn_left_encoder(true);
+    bench.turn_right_encoder(true);
+    bench.mcu.run_ms(1.0);
+  }
+  bench.run_ms(100);
+  const CanFrame after = bench.last_frame(kIdEncoders);
+  EXPECT_EQ(static_cast<std::int16_t>(value_at(after, 0) - value_at(before, 0)), 3);
+  EXPECT_EQ(static_cast<std::int16_t>(value_at(after, 1) - value_at(before, 1)), 3);
+  EXPECT_EQ(bench.last_frame(kIdMotors).data[6], errors + 1) << "the flood alone";
+}
+
 TEST(ScreedImage, DrivesAndStopsWithTheLink) {
   Bench bench;
   set_off(bench);
@@ -329,6 +373,120 @@ TEST(ScreedImage, KeepsItsTickWhileTheRadioIsFlooded) {
   }
   EXPECT_NEAR(static_cast<double>(bench.frames(kIdHeartbeat).size()), 11, 1);
   expect_healthy(bench);
+}
+
+// The receiver holds two bytes and one in its shift register. What comes meanwhile is lost, and the
+// flag beside the first of the three says so.
+TEST(ScreedImage, CountsWhatTheReceiverLost) {
+  Bench bench;
+  bench.run_ms(1000);
+  const auto lost = [&bench] {
+    bench.run_ms(600);
+    return message::Health::unpack(bench.last_frame(kIdHealth).data).uart_errors;
+  };
+  ASSERT_EQ(lost(), 0);
+  int taken = 0;
+  for (int i = 0; i < 3; ++i) taken += bench.mcu.receive_byte('x') ? 1 : 0;
+  EXPECT_EQ(taken, 3);
+  EXPECT_EQ(lost(), 0);
+  for (int i = 0; i < 4; ++i) taken += bench.mcu.receive_byte('x') ? 1 : 0;
+  EXPECT_EQ(taken, 6);
+  EXPECT_EQ(lost(), 1);
+  bench.mcu.receive({'x', 'x', 'x', 'x', 'x'});
+  EXPECT_EQ(lost(), 1) << "one character time apart it takes them all";
+}
+
+/// The main loop hangs for so many cycles as it begins the next tick; interrupts go on.
+void hang(Bench& bench, std::uint64_t cycles) {
+  std::ifstream listing(kScreedListing);
+  const auto range = avr_stack::Disassembly::read(listing).range_of(
+      "_ZN6screed3hal12read_sensorsERNS_12SensorSampleE");
+  std::uint8_t* const code = bench.mcu.simulator()->flash + range.value().begin;
+  const std::array<std::uint8_t, 2> kept = {code[0], code[1]};
+  code[0] = 0xFF;  // a jump to itself
+  code[1] = 0xCF;
+  begin_tick(bench);
+  bench.mcu.run_to(bench.mcu.cycle() + cycles);
+  code[0] = kept[0];
+  code[1] = kept[1];
+}
+
+// The buffer holds 128 bytes between two ticks.
+TEST(ScreedImage, CountsWhatDoesNotFitIntoItsBuffer) {
+  Bench bench;
+  bench.run_ms(300);
+  begin_tick(bench);
+  bench.mcu.run_ms(5.0);
+  bench.mcu.receive(std::vector<std::uint8_t>(28, 'x'));  // in 5 ms, for the tick that hangs
+  bench.mcu.run_ms(4.9);
+  const std::vector<std::uint8_t> flood(200, 'x');
+  bench.mcu.receive(flood);
+  hang(bench, 45 * kMsCycles);
+  bench.run_ms(600);
+  EXPECT_EQ(bench.mcu.overruns(), 0U);
+  EXPECT_EQ(message::Health::unpack(bench.last_frame(kIdHealth).data).uart_errors, 28 + 200 - 128);
+  EXPECT_EQ(bench.mcu.starts(), 1);
+}
+
+// Of three ticks in 35 ms one is executed, late, and two are missed: the clock goes on by all
+// three.
+TEST(ScreedImage, TheClockHoldsTheTicksThatItMissed) {
+  Bench bench;
+  bench.run_ms(2500);
+  begin_tick(bench);
+  bench.mcu.run_ms(5.0);
+  hang(bench, 35 * kMsCycles);
+  bench.run_ms(2000);
+  std::vector<std::uint32_t> times_ms;
+  for (const CanFrame& frame : bench.frames(kIdTime))
+    times_ms.push_back(message::Time::unpack(frame.data).time);
+  ASSERT_GE(times_ms.size(), 4U);
+  std::uint32_t longest_ms = 0;
+  for (std::size_t i = 1; i < times_ms.size(); ++i) {
+    const std::uint32_t step_ms = times_ms[i] - times_ms[i - 1];
+    EXPECT_GE(step_ms, message::Time::kPeriod_ms);
+    longest_ms = std::max(longest_ms, step_ms);
+  }
+  EXPECT_EQ(longest_ms, message::Time::kPeriod_ms + 20U);
+}
+
+/// Most computing time of a tick in which it hangs, us.
+int longest_tick_of_a_hang(std::uint64_t cycles) {
+  Bench bench;
+  bench.run_ms(300);
+  begin_tick(bench);
+  bench.mcu.run_ms(5.0);
+  hang(bench, cycles);
+  bench.run_ms(600);
+  EXPECT_EQ(bench.mcu.starts(), 1);
+  int longest = 0;
+  for (const CanFrame& frame : bench.frames(kIdHealth))
+    longest = std::max<int>(longest, message::Health::unpack(frame.data).longest_tick);
+  return longest;
+}
+
+TEST(ScreedImage, TheTimeOfATickHoldsTheTicksThatItMissed) {
+  const int own_us = longest_tick_of_a_hang(5 * kMsCycles) - 5000;
+  EXPECT_GT(own_us, 500);
+  EXPECT_LT(own_us, 5000);
+  for (const int ms : {15, 25, 29}) {
+    const int expected_us = 1000 * ms + own_us;
+    EXPECT_NEAR(longest_tick_of_a_hang(static_cast<std::uint64_t>(ms) * kMsCycles), expected_us,
+                300)
+        << ms;
+  }
+  EXPECT_EQ(longest_tick_of_a_hang(45 * kMsCycles), 32'767)
+      << "what 16 bits of half microseconds hold";
+  // Whatever cycle the next tick comes in, also between reading the timer and reading what was
+  // missed.
+  std::uint64_t cycles = 9 * kMsCycles;
+  for (int i = 0; i < 3; ++i) {
+    const int to_the_end_us = 10'000 - longest_tick_of_a_hang(cycles);
+    cycles += static_cast<std::uint64_t>(to_the_end_us) * (kMsCycles / 1000);
+  }
+  cycles -= 64;
+  for (int i = 0; i < 64; ++i, cycles += 2)
+    EXPECT_NEAR(longest_tick_of_a_hang(cycles), 10'000, 20) << cycles;
 }
 
 TEST(ScreedImage, WatchdogStopsAHungProgramAndResetsIt) {
