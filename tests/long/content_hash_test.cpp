@@ -18,13 +18,13 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "7d3aace92edbb731e6d7f9848c9b7474"},
+    {"first_drive", "--duration 60", "e5a5071a4f22145fdaf6afdaa61e6a4a"},
     {"soft_bed", "--duration 6", "e36c37299821ce686bd8b155d81fb123"},
-    {"soft_bed", "--hal surrogate --duration 10", "c780b89bdacefa9ac7bc90cde1f26ca3"},
+    {"soft_bed", "--hal surrogate --duration 10", "77d2612e280af1d93230014082575739"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "4d2cfb7791addd21d1df8f4c609fbbf7"},
+     "85a29ed28ce529771f5f3c92996647e0"},
     {"gravel_bed", "--duration 1", "90e600f7d9104c20cf1e6a16d5fca9f7"},
 }};
 

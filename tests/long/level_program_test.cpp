@@ -141,9 +141,9 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "ab1e6d283cd80d8b94034d72eebd623b", "36cce8bbf136f20ee886547628c4b0f1",
-                "396c17db90016416d49e40aa37e35ba4", "a43e1a46b643f3dfdb37ce46fb8670e4",
-                "f7378e66cac83c2e39cb605c130b38b4", "6b6ed3771d3e9bb20dd5f2d796a8b092"}));
+                "56f569915fed5fee4a624122511c5af1", "fdff552b6c97200a1886cf669b6ed7d9",
+                "8ff15ecfee08833af68d93cc46c03b7d", "5e1f19cce2c6eaf1706afaa16215f173",
+                "44cfc5f4d3c16b5399f8f4e017315c85", "bcd3317cdd3cadf0497bad437e25fa33"}));
 }
 
 // Courses with four robots have a step that they allow, those on particles all that particles need.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/physics/terrain/footprint_contact.h"
+
 namespace screed {
 
 HeightWatch::HeightWatch(const HeightField& field) : revisions_(field.tile_revisions()) {
@@ -124,15 +126,6 @@ double wrap_rad(double angle) {
   return std::remainder(angle, 2.0 * std::numbers::pi);
 }
 
-/// Slip of a driven surface over the ground: 1 spinning in place, 0 rolling, -1 locked and dragged.
-double slip(double surface, double ground) {
-  const double most = std::max(std::abs(surface), std::abs(ground));
-  constexpr double kStanding = 1e-3;  // below a mm/s slip means nothing
-  return most < kStanding
-             ? 0.0
-             : std::clamp((surface - ground) / std::copysign(most, surface), -1.0, 1.0);
-}
-
 }  // namespace
 
 SimFrame FrameRecorder::record(double time_s, const RobotView& plant, const Robot& robot) {
@@ -176,8 +169,8 @@ SimFrame FrameRecorder::record(double time_s, const RobotView& plant, const Robo
   frame.rate_z = chassis.omega_body.z();
   frame.track_left = vehicle.track_speed_m_per_s(kLeft);
   frame.track_right = vehicle.track_speed_m_per_s(kRight);
-  frame.slip_left = slip(frame.track_left, vehicle.ground_speed_m_per_s(kLeft));
-  frame.slip_right = slip(frame.track_right, vehicle.ground_speed_m_per_s(kRight));
+  frame.slip_left = signed_slip(frame.track_left, vehicle.ground_speed_m_per_s(kLeft));
+  frame.slip_right = signed_slip(frame.track_right, vehicle.ground_speed_m_per_s(kRight));
   frame.sinkage_left = vehicle.sinkage_m(kLeft);
   frame.sinkage_right = vehicle.sinkage_m(kRight);
   frame.load_left = vehicle.load_n(kLeft);

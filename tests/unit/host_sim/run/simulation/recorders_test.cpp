@@ -192,10 +192,10 @@ TEST(FrameRecorderTest, SlipIsThatOfEachTrackDrivenOrBrakedForwardOrBackward) {
     robot.track = {way * 0.2, way * 0.15};
     robot.ground = {way * 0.15, way * 0.2};
     expect_slip(0.25, -0.25);
-    // Spinning on the spot, and braked as hard; a track that the other one drags against its own way.
-    robot.track = {way * 0.2, way * 0.05};
+    // Spinning on the spot, and locked; a track that the other one drags against its own way.
+    robot.track = {way * 0.2, 0.0};
     robot.ground = {0.0, way * 0.2};
-    expect_slip(1.0, -0.75);
+    expect_slip(1.0, -1.0);
     robot.track = {way * 0.2, way * 0.05};
     robot.ground = {way * 0.2, way * -0.2};
     expect_slip(0.0, 1.0);
