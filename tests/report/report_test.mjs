@@ -6,6 +6,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { cpSync, existsSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
 import { openReport, startBrowser, waitFor } from './browser.mjs';
 
 const [program, folder] = process.argv.slice(2);
@@ -18,6 +19,10 @@ seed = 3
 size = 2
 edges = walls
 model = scm
+[relief]
+rms = 0.008
+longest_wave = 1.5
+shortest_wave = 0.3
 [soil]
 cell = 0.01
 `;
@@ -86,11 +91,13 @@ async function curvesAreTheCsv(page, csv) {
 const tests = {
   async 'of a run on soil: no complaint, the slider moves robot and terrain, light and dark differ'(browser) {
     const { page, complaints } = await openReport(browser, join(folder, 'soil.html'));
-    const start = await canvas(page);
-    await moveSlider(page, await lastStop(page));
-    assert.equal(await page.$eval('.time output', (it) => it.textContent), '40.00 s of 40.00 s');
+    assert.equal(await page.$eval('.time output', (it) => it.textContent), '40.00 s of 40.00 s', 'opens at the end');
     const end = await canvas(page);
+    await moveSlider(page, 0);
+    const start = await canvas(page);
     assert.notEqual(end, start, 'the picture does not change with the slider');
+    await moveSlider(page, await lastStop(page));
+    assert.equal(await canvas(page), end);
     // With the robot where it is, only the ground differs.
     await page.select('select[aria-label=Terrain]', 'before');
     assert.notEqual(await canvas(page), end, 'the terrain before looks like that after');
@@ -143,6 +150,14 @@ const tests = {
       near(before, factor * summary.terrain_before[key_], `${name} before`);
       near(after, factor * summary.terrain_after[key_], `${name} after`);
     }
+    const { relief_m: before } = summary.terrain_before;
+    const { relief_m: after } = summary.terrain_after;
+    const { changeText } = await import(pathToFileURL('tools/report/src/elements.js'));
+    assert.equal(await page.$eval('.relief', (it) => it.textContent),
+      `Relief at the robot\u2019s scale: ${changeText(1000 * before, 1000 * after, 'mm')}.`);
+    assert.equal(changeText(10.94, 4.6, 'mm'), '10.9 \u2192 4.6 mm (\u221258 %)');
+    assert.equal(changeText(2, 2.5, 'mm'), '2.0 \u2192 2.5 mm (+25 %)');
+    assert.equal(changeText(0, 1, 'mm'), '0.0 \u2192 1.0 mm');
     const identity = await page.$eval('#page', (it) => it.textContent);
     assert.ok(identity.includes(summary.content_hash) && identity.includes(summary.version));
     // The last point of the terrain's curve is the terrain at the end.
@@ -153,9 +168,10 @@ const tests = {
   async 'a run without recorded heights says so and moves its robot'(browser) {
     const { page, complaints } = await openReport(browser, join(folder, 'rigid.html'), { scheme: 'dark' });
     assert.match(await page.$eval('#page', (it) => it.textContent), /heights of the ticks were not recorded/);
-    const start = await canvas(page);
-    await moveSlider(page, await lastStop(page));
-    assert.notEqual(await canvas(page), start);
+    const end = await canvas(page);
+    await moveSlider(page, 0);
+    assert.notEqual(await canvas(page), end);
+    assert.equal(await page.$('.relief'), null, 'the ground is rigid');
     assert.deepEqual(complaints, []);
     await page.close();
   },
@@ -171,11 +187,19 @@ const tests = {
     drawn.forEach((energy, i) =>
       assert.ok(Math.abs(energy - robots[i].energy_j) <= 1e-9 * energy, `robot ${i}: ${energy}`));
     assert.equal((await page.$$('details.row')).length, 3);
-    const start = await canvas(page);
-    await moveSlider(page, await lastStop(page));
-    assert.notEqual(await canvas(page), start);
+    const end = await canvas(page);
+    await moveSlider(page, 0);
+    assert.notEqual(await canvas(page), end);
     assert.deepEqual(complaints, []);
     await page.close();
+  },
+  async 'ticks have the decimals of their step and no negative zero'() {
+    const { tickTexts } = await import(pathToFileURL('tools/report/src/elements.js'));
+    assert.deepEqual(tickTexts([-0.0002, -0, 0.0002, 0.0004]), ['\u22120.0002', '0.0000', '0.0002', '0.0004']);
+    assert.deepEqual(tickTexts([-1e-20, 0.25, 0.5]), ['0.00', '0.25', '0.50']);
+    assert.deepEqual(tickTexts([-0.30000000000000004, -0.2, -0.1]), ['\u22120.3', '\u22120.2', '\u22120.1']);
+    assert.deepEqual(tickTexts([-12000, null, 14500]), ['\u221212\u2009000', '', '14\u2009500']);
+    assert.deepEqual(tickTexts([0]), ['0']);
   },
   async 'figures of a campaign are those of runs.csv'(browser) {
     const { page, complaints } = await openReport(browser, join(folder, 'out/soils/report.html'));

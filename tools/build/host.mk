@@ -245,7 +245,8 @@ sim: $(SCREED)  ## a robot levels a small walled bed, a minute (EXPERIMENT=FILE 
 # Into a folder that is new: what was there stays.
 level: $(SCREED) $(REPORT_PAGE)  ## the same, and a page with a time slider (ARGS='--seed 2')
 	@run=$(OUT)/level ; number=2 ; while [ -e $$run ] ; do run=$(OUT)/level-$$number ; number=$$((number + 1)) ; done ; \
-	  $(SCREED) sim host_sim/data/experiments/level_bed.ini --out $$run $(ARGS) && $(SCREED) report $$run
+	  $(SCREED) sim host_sim/data/experiments/level_bed.ini --heights --out $$run $(ARGS) && \
+	  $(SCREED) report $$run
 
 # What `make install` makes below PREFIX. The program finds its data from where it lies itself
 # (host_sim/core/data_folders.h), so the tree may be moved.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "host_sim/core/errors.h"
 
@@ -66,12 +65,11 @@ ChartAxis tight_axis(const ValueRange& range, double air, double left_px, double
 }
 
 std::string tick_text(double value, int decimals) {
-  char text[60];
-  std::snprintf(text, sizeof text, "%.*f", decimals, std::fabs(value));
-  std::string grouped = text;
+  std::string grouped = number_text(value, decimals);
+  const size_t first = std::min(grouped.find_first_of("0123456789"), grouped.size());
   const size_t point = std::min(grouped.find('.'), grouped.size());
-  for (size_t at = point; at > 3; at -= 3) grouped.insert(at - 3, "\u2009");
-  return (value < 0.0 ? "\u2212" : "") + grouped;
+  for (size_t at = point; at > first + 3; at -= 3) grouped.insert(at - 3, "\u2009");
+  return grouped;
 }
 
 double tick_width_px(const ChartAxis& axis) {

@@ -135,7 +135,7 @@ void MapFrame::draw_axes() {
                  kInk);
     canvas_.text({place, bottom + 23.0}, number_text(x, x_ticks.decimals), along_x);
   }
-  canvas_.text({map_.left + 0.5 * map_.width, bottom + 50.0}, "x, east (m)", along_x);
+  canvas_.text({map_.left + 0.5 * map_.width, bottom + 50.0}, "x, east [m]", along_x);
 
   const Ticks y_ticks = round_ticks(ground_.y_min, ground_.y_max, max_count(map_.height));
   double widest = 0.0;
@@ -148,7 +148,7 @@ void MapFrame::draw_axes() {
     widest = std::max(widest, canvas_.text_width(label, along_y));
   }
   canvas_.text(
-      {map_.left - 28.0 - widest, map_.top + 0.5 * map_.height}, "y, north (m)",
+      {map_.left - 28.0 - widest, map_.top + 0.5 * map_.height}, "y, north [m]",
       {.size_px = kTextSize_px, .color = kInk, .align = TextAlign::kCenter, .upwards = true});
 }
 

@@ -154,7 +154,7 @@ HeightColors height_scale(const TerrainStatistics& s, const PictureOptions& opti
 }
 
 ColorScale color_scale(const HeightColors& heights) {
-  return {heights.low_m * kMillimetres, heights.high_m * kMillimetres, "height (mm)",
+  return {heights.low_m * kMillimetres, heights.high_m * kMillimetres, "height [mm]",
           [heights](double mm) { return heights.color(mm / kMillimetres); }};
 }
 
@@ -258,7 +258,7 @@ Canvas draw_difference(const HeightField& before, const HeightField& after,
   largest = std::ceil(largest / step) * step;  // the colour bar ends on a round number
 
   put_map(canvas, frame, paint_difference(grid_of(frame), before, after, largest));
-  const ColorScale scale{-largest * kMillimetres, largest * kMillimetres, "change of height (mm)",
+  const ColorScale scale{-largest * kMillimetres, largest * kMillimetres, "change of height [mm]",
                          [&](double mm) { return difference_color(mm / kMillimetres / largest); }};
   finish(canvas, frame, scale, after.edge(),
          options.subtitle.empty() ? figures(change) : options.subtitle, options);

@@ -69,12 +69,12 @@ StackedChart curves(std::span<const LevelingPoint> points) {
   chart.x_label = "time [min]";
   chart.x.add(0.0);
   ChartPanel heights{"RMS of heights [mm]", {}, {}, true};
-  heights.series.push_back(series_of("relief, from 50 mm up", points, kReliefColor,
+  heights.series.push_back(series_of("relief (50 mm and longer)", points, kReliefColor,
                                      [](const LevelingPoint& p) { return p.relief * kMmPerM; }));
-  heights.series.push_back(series_of("roughness, below", points, kRoughnessColor,
+  heights.series.push_back(series_of("roughness (shorter)", points, kRoughnessColor,
                                      [](const LevelingPoint& p) { return p.roughness * kMmPerM; }));
   chart.panels.push_back(std::move(heights));
-  ChartPanel transport{"transport left [%]", {}, {}, true};
+  ChartPanel transport{"work remaining [%]", {}, {}, true};
   transport.series.push_back(series_of("", points, kTransportColor, [](const LevelingPoint& p) {
     return (1.0 - p.progress) * kPerCent;
   }));

@@ -1,6 +1,6 @@
 // Means of a campaign's cells over time, each with the band of its interval.
 import uPlot from 'uplot';
-import { axis } from './curves.js';
+import { axis, valueRange } from './curves.js';
 import { element, figure, onSchemeChange, select, shortNumber, styleColor, table } from './elements.js';
 
 /// Columns of the table below the plot: shares of the time.
@@ -16,7 +16,6 @@ function colorOf(cell, cells, band) {
 /// Three series a cell: the mean, and both ends of its band, which are not drawn.
 function plotOf(box, curve, names) {
   const count = curve.cells.length;
-  const unit = curve.unit === '1' ? '\u2013' : curve.unit;
   const series = [{ label: 'time [s]', value: (plot, value) => (value === null ? '\u2013' : value.toFixed(1)) }];
   const bands = [];
   curve.cells.forEach((cell, i) => {
@@ -28,9 +27,9 @@ function plotOf(box, curve, names) {
   });
   const width = () => Math.max(280, box.clientWidth - 20);
   const plot = new uPlot(
-    { width: width(), height: 320, series, bands, scales: { x: { time: false } },
+    { width: width(), height: 320, series, bands, scales: { x: { time: false }, y: { range: valueRange } },
       cursor: { drag: { x: true, y: false }, y: false },
-                           axes: [axis('time [s]', 32), axis(`${curve.name} [${unit}]`, 64)] },
+      axes: [axis('time [s]', 32), axis(`${curve.name.replaceAll('_', ' ')} [${curve.unit}]`, 72)] },
     [curve.times, ...curve.cells.flatMap((cell) => [cell.mean, cell.low, cell.high])], box);
   new ResizeObserver(() => plot.setSize({ width: width(), height: 320 })).observe(box);
 }

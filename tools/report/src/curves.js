@@ -1,7 +1,7 @@
 // Curves over time, one below the other: one time axis for all, the slider's time as a line, events as dashes.
 import uPlot from 'uplot';
 import { doubles, floats } from './data.js';
-import { element, onSchemeChange, shortNumber, styleColor } from './elements.js';
+import { element, onSchemeChange, shortNumber, styleColor, tickTexts } from './elements.js';
 
 const sync = uPlot.sync('time');
 const seriesColors = () => [1, 2, 3, 4].map((i) => styleColor(`--series-${i}`));
@@ -9,12 +9,24 @@ const seriesColors = () => [1, 2, 3, 4].map((i) => styleColor(`--series-${i}`));
 /// Numbers for uPlot: null where there is none.
 const points = (values) => Array.from(values, (value) => (Number.isNaN(value) ? null : value));
 
-/// An axis of uPlot in the page's colours; `size` in pixels.
+/// An axis of uPlot in the page's colours; `size` in pixels, more where the texts of the ticks need it.
 export function axis(label, size) {
   const faint = styleColor('--faint');
-  return { label, labelSize: 20, size, stroke: faint, font: '12px system-ui, sans-serif',
+  const letter_px = 7;
+  const others_px = 30; // ticks, gaps, and what the label takes of this room
+  const longest = (texts) => Math.max(0, ...(texts ?? []).map((it) => it.length));
+  return { label, labelSize: 20, stroke: faint, font: '12px system-ui, sans-serif',
     labelFont: '12px system-ui, sans-serif',
-           grid: { stroke: styleColor('--line'), width: 1 }, ticks: { stroke: styleColor('--line') } };
+    size: (plot, texts, index) => (index === 0 ? size : Math.max(size, others_px + letter_px * longest(texts))),
+    values: (plot, marks) => tickTexts(marks),
+    grid: { stroke: styleColor('--line'), width: 1 }, ticks: { stroke: styleColor('--line') } };
+}
+
+/// A range of values with some air. What changes by less than any sensor shows is level: noise of the arithmetic would
+/// fill the plot.
+export function valueRange(plot, low, high) {
+  if (low === null) return [0, 1];
+  return high - low > 1e-6 ? uPlot.rangeNum(low, high, 0.1, true) : [low - 1, high + 1];
 }
 
 export class Curves {
@@ -97,11 +109,11 @@ export class Curves {
                paths: dots ? () => null : undefined,
                  value: (plot, value) => (value === null ? '\u2013' : shortNumber(value)) };
     });
-    const unit = panel.unit === '1' ? '\u2013' : panel.unit;
     const options = this.#options(190);
+    options.scales.y = { range: valueRange };
     options.series = [{ label: 'time [s]', value: (plot, value) => (value === null ? '\u2013' : value.toFixed(2)) },
       ...series];
-    options.axes = [axis('time [s]', 32), axis(`[${unit}]`, 56)];
+    options.axes = [axis('time [s]', 32), axis(`[${panel.unit}]`, 72)];
     return new uPlot(options, panel.data, box);
   }
 
@@ -112,7 +124,7 @@ export class Curves {
     options.scales.y = { range: [0, panel.rows.length] };
     options.series = [{}, { show: false }];
     options.axes = [axis('time [s]', 32),
-      { ...axis('', 56), labelSize: 0, size: 76, grid: { show: false }, ticks: { show: false },
+      { ...axis('', 72), labelSize: 0, size: 92, grid: { show: false }, ticks: { show: false },
       splits: panel.rows.map((row, i) => panel.rows.length - i - 0.5),
         values: () => panel.rows.map((row) => row.name) }];
     options.hooks.draw.unshift((plot) => this.#drawRows(plot, panel.rows));

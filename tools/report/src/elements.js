@@ -59,6 +59,27 @@ export function shortNumber(number) {
 export const plainNumber = (number) =>
   (number === 0 ? '0' : String(Number(number.toPrecision(4))).replace('-', '\u2212'));
 
+/// The ticks of an axis as text: all with the decimals that tell each from the next, zero without a sign.
+export function tickTexts(marks) {
+  const known = marks.filter(Number.isFinite);
+  const step = known.length > 1 ? Math.abs(known[1] - known[0]) : Math.abs(known[0] ?? 0);
+  let decimals = 0;
+  while (decimals < 12 && step > 0 && Math.abs(step - Number(step.toFixed(decimals))) > 1e-3 * step) ++decimals;
+  return marks.map((mark) => {
+    if (!Number.isFinite(mark)) return '';
+    const [whole, fraction] = Math.abs(mark).toFixed(decimals).split('.');
+    const text = whole.replace(/\B(?=(\d{3})+$)/g, '\u2009') + (fraction === undefined ? '' : `.${fraction}`);
+    return mark < 0 && Number(mark.toFixed(decimals)) !== 0 ? `\u2212${text}` : text;
+  });
+}
+
+/// "10.9 \u2192 4.6 mm (\u221258 %)"; from 0 there is no change in per cent.
+export function changeText(before, after, unit) {
+  const percent = Math.round(100 * (after / before - 1));
+  const change = Number.isFinite(percent) ? ` (${percent > 0 ? '+' : ''}${tickTexts([percent])[0]} %)` : '';
+  return `${before.toFixed(1)} \u2192 ${after.toFixed(1)} ${unit}${change}`;
+}
+
 export const seconds = (time) => `${time.toFixed(2)} s`;
 
 /// A colour of the style sheet.

@@ -1,6 +1,6 @@
 // Rows with a name, and beside each its figures as points with intervals, in columns of one axis each. SVG, coloured by
 // the style sheet.
-import { plainNumber } from './elements.js';
+import { tickTexts } from './elements.js';
 
 const rowHeight = 24;
 const axisHeight = 44;
@@ -38,11 +38,13 @@ function rangeOf(numbers, zero) {
 }
 
 function axis(group, scale, range, top, bottom, width, title, label) {
-  for (const mark of ticks(...range, Math.max(2, width / 90))) {
+  const marks = ticks(...range, Math.max(2, width / 90));
+  const texts = tickTexts(marks);
+  marks.forEach((mark, i) => {
     const x = scale(mark);
     group.append(svg('line', { x1: x, x2: x, y1: top, y2: bottom, class: 'grid' }),
-      svg('text', { x, y: bottom + 16, class: 'tick' }, plainNumber(Number(mark.toPrecision(12)))));
-  }
+      svg('text', { x, y: bottom + 16, class: 'tick' }, texts[i]));
+  });
   group.append(svg('text', { x: scale(range[0]), y: 14, class: 'title' }, title),
     svg('text', { x: (scale(range[0]) + scale(range[1])) / 2, y: bottom + 36, class: 'tick' }, label));
 }
@@ -98,14 +100,18 @@ export function scatterPlot(parent, points, xLabel, yLabel) {
   const x = (number) => box.left + ((number - ranges[0][0]) / (ranges[0][1] - ranges[0][0])) * (box.right - box.left);
   const y = (number) => box.bottom - ((number - ranges[1][0]) / (ranges[1][1] - ranges[1][0])) * (box.bottom - box.top);
   const root = svg('svg', { class: 'forest', width, height, role: 'img', 'aria-label': `${yLabel} over ${xLabel}` });
-  for (const mark of ticks(...ranges[0], width / 110)) {
+  const across = ticks(...ranges[0], width / 110);
+  const acrossTexts = tickTexts(across);
+  across.forEach((mark, i) => {
     root.append(svg('line', { x1: x(mark), x2: x(mark), y1: box.top, y2: box.bottom, class: 'grid' }),
-      svg('text', { x: x(mark), y: box.bottom + 16, class: 'tick' }, plainNumber(Number(mark.toPrecision(12)))));
-  }
-  for (const mark of ticks(...ranges[1], 5)) {
+      svg('text', { x: x(mark), y: box.bottom + 16, class: 'tick' }, acrossTexts[i]));
+  });
+  const upright = ticks(...ranges[1], 5);
+  const uprightTexts = tickTexts(upright);
+  upright.forEach((mark, i) => {
     root.append(svg('line', { x1: box.left, x2: box.right, y1: y(mark), y2: y(mark), class: 'grid' }),
-      svg('text', { x: box.left - 6, y: y(mark) + 4, class: 'tick end' }, plainNumber(Number(mark.toPrecision(12)))));
-  }
+      svg('text', { x: box.left - 6, y: y(mark) + 4, class: 'tick end' }, uprightTexts[i]));
+  });
   for (const [px, py] of points) root.append(svg('circle', { cx: x(px), cy: y(py), r: 3, class: 'single' }));
   root.append(svg('text', { x: (box.left + box.right) / 2, y: height - 10, class: 'tick' }, xLabel));
   parent.append(root);

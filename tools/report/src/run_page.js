@@ -1,7 +1,7 @@
 // The page of one run.
 import { Curves, readDoubles, readFloats, swatch } from './curves.js';
 import { Heights, doubles, floats, words } from './data.js';
-import { element, figure, plainNumber, seconds, select, shortNumber, table } from './elements.js';
+import { changeText, element, figure, plainNumber, seconds, select, shortNumber, table } from './elements.js';
 import { TerrainView } from './terrain_view.js';
 
 /// Columns of frames.csv that stand beside the slider; all of them are below.
@@ -44,11 +44,21 @@ function figuresByRobot(robots, ends) {
       ({ name: title, cells: [name(title), ...robots.map((robot) => robot[key]), ''] }))]);
 }
 
+/// What the drive did to the ground, in a line; null where it moved none.
+function reliefText(terrain) {
+  const of = (list, name) => list?.find((it) => it.name === name);
+  if (!(of(terrain?.change, 'Ground moved')?.value > 0)) return null;
+  const { unit, before, after } = of(terrain.figures, 'Relief at robot scale (rms)');
+  return `Relief at the robot\u2019s scale: ${changeText(before, after, unit)}.`;
+}
+
 function header(page, facts) {
   page.append(element('h1', {}, facts.title));
   if (!facts.complete) page.append(
     element('p', { class: 'warning' }, facts.running ? 'The run goes on: this is what was saved when this page was made.' :
       'The recorded run did not end: this is what was written until then.'));
+  const relief = reliefText(facts.terrain);
+  if (relief !== null) page.append(element('p', { class: 'relief' }, relief));
   const { robots } = facts;
   const ends = [['State at the end', 'state'], ['Faults at the end', 'faults']];
   const of = robots.length > 1 ? figuresByRobot(robots, ends)
@@ -186,6 +196,8 @@ async function terrainSection(page, facts, timeline, rows) {
         view.setByChange(value === 'change');
         shown.show(value === 'change');
       }),
+      select('Path', [['recent', 'recent'], ['whole', 'whole']],
+        (value) => view.setWholePath(value === 'whole')),
       select('Heights', [1, 2, 5, 10].map((times) => [times, `${times} \u00d7`]),
         (value) => view.setExaggeration(Number(value))),
       reset, above);
@@ -298,5 +310,5 @@ export async function showRun(page, facts) {
   eventSection(page, facts, timeline);
   terrainFigures(page, facts);
   configurationSection(page, facts);
-  timeline.show(0);
+  timeline.show(timeline.last);
 }

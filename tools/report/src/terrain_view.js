@@ -4,9 +4,11 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
-import { onSchemeChange, styleColor } from './elements.js';
+import { onSchemeChange, styleColor, tickTexts } from './elements.js';
 
 const pathWidth_px = 3;
+/// As in the pictures of a run: a longer path hides the ground.
+const drawnSides = 20;
 
 /// A text that always faces the reader, `height` metres high.
 function textSprite(text, height, color) {
@@ -116,15 +118,20 @@ class Surface {
 
 /// One robot: its path up to now, and boxes for hull and running gear.
 class RobotModel {
-  constructor(robot, track, stateColors) {
+  /// `length_m`: of the path, behind the robot, that is drawn.
+  constructor(robot, track, stateColors, length_m) {
     this.track = track;
+    this.length_m = length_m;
     this.segments = []; // the end point of each drawn segment
     const breaks = new Set(robot.track.breaks);
     for (let i = 1; i < track.rows.length; ++i) if (!breaks.has(i)) this.segments.push(i);
     this.colors = new Float32Array(6 * this.segments.length);
+    this.ends_m = []; // how far it is along the path to the end of each segment
     this.segments.forEach((end, i) => {
       const color = stateColors[track.states[end]] ?? stateColors[0];
       this.colors.set([color.r, color.g, color.b, color.r, color.g, color.b], 6 * i);
+      const [x, y] = [0, 1].map((axis) => track.places[3 * end + axis] - track.places[3 * (end - 1) + axis]);
+      this.ends_m.push((this.ends_m[i - 1] ?? 0) + Math.hypot(x, y));
     });
     this.material = new LineMaterial({ linewidth: pathWidth_px, vertexColors: true });
     this.line = new LineSegments2(new LineSegmentsGeometry(), this.material);
@@ -154,27 +161,27 @@ class RobotModel {
   /// Heights `exaggeration` times as high, but not the height of the robot above the ground.
   place(exaggeration, ride_m) {
     const { places } = this.track;
-    const corners = new Float32Array(6 * this.segments.length);
+    this.corners = new Float32Array(6 * this.segments.length);
     const up = (i) => (places[3 * i + 2] - ride_m) * exaggeration + ride_m;
     this.segments.forEach((end, i) => {
       const start = end - 1;
-      corners.set([places[3 * start], places[3 * start + 1], up(start), places[3 * end], places[3 * end + 1], up(end)],
-        6 * i);
+      const corner = (at) => [places[3 * at], places[3 * at + 1], up(at)];
+      this.corners.set([...corner(start), ...corner(end)], 6 * i);
     });
-    if (this.segments.length === 0) return;
-    this.line.geometry.dispose();
-    this.line.geometry = new LineSegmentsGeometry();
-    this.line.geometry.setPositions(corners);
-    this.line.geometry.setColors(this.colors);
   }
 
-  /// The path up to a row of the session.
-  show(row) {
-    let drawn = 0;
-    while (drawn < this.segments.length && this.track.rows[this.segments[drawn]] <= row) ++drawn;
-    this.line.visible = drawn > 0;
-    this.line.geometry.instanceCount = drawn;
-    this.drawn = drawn;
+  /// The path up to a row of the session, or its end.
+  show(row, whole) {
+    let end = 0;
+    while (end < this.segments.length && this.track.rows[this.segments[end]] <= row) ++end;
+    let begin = 0;
+    while (!whole && begin < end && this.ends_m[end - 1] - this.ends_m[begin] > this.length_m) ++begin;
+    this.line.visible = end > begin;
+    if (end === begin) return;
+    this.line.geometry.dispose();
+    this.line.geometry = new LineSegmentsGeometry();
+    this.line.geometry.setPositions(this.corners.subarray(6 * begin, 6 * end));
+    this.line.geometry.setColors(this.colors.subarray(6 * begin, 6 * end));
   }
 }
 
@@ -186,6 +193,9 @@ export class TerrainView {
     this.heights = heights;
     this.exaggeration = 1;
     this.byChange = false;
+    this.wholePath = false;
+    const [width, depth] = [facts.terrain.x_m, facts.terrain.y_m].map((it) => it.at(-1) - it[0]);
+    const path_m = drawnSides * Math.max(width, depth);
     this.renderer = new THREE.WebGLRenderer({ antialias: true });
     this.renderer.setPixelRatio(devicePixelRatio);
     parent.append(this.renderer.domElement);
@@ -199,7 +209,7 @@ export class TerrainView {
     this.surface = new Surface(facts.terrain, heights);
     this.scene.add(this.surface.mesh);
     const stateColors = facts.leveling_states.map((state) => new THREE.Color(state.color));
-    this.robots = facts.robots.map((robot, i) => new RobotModel(robot, tracks[i], stateColors));
+    this.robots = facts.robots.map((robot, i) => new RobotModel(robot, tracks[i], stateColors, path_m));
     for (const robot of this.robots) this.scene.add(robot.line, robot.body);
     this.axes = new THREE.Group();
     this.scene.add(this.axes);
@@ -244,16 +254,20 @@ export class TerrainView {
       this.axes.add(sprite);
     };
     const step = tickStep(size);
-    const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-    const name = (value) => value.toFixed(decimals).replace('-', '\u2212');
-    for (let k = Math.ceil(west / step - 1e-9); k * step <= east + 1e-9; ++k) {
-      add([k * step, south], [k * step, south - 0.015 * size]);
-      text(name(k * step), k * step, south - 1.2 * letter);
-    }
-    for (let k = Math.ceil(south / step - 1e-9); k * step <= north + 1e-9; ++k) {
-      add([west, k * step], [west - 0.015 * size, k * step]);
-      text(name(k * step), west - 1.5 * letter, k * step);
-    }
+    const marks = (low, high) => {
+      const list = [];
+      for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9; ++k) list.push(k * step);
+      return list;
+    };
+    const each = (list, draw) => tickTexts(list).forEach((words, i) => draw(words, list[i]));
+    each(marks(west, east), (words, px) => {
+      add([px, south], [px, south - 0.015 * size]);
+      text(words, px, south - 1.2 * letter);
+    });
+    each(marks(south, north), (words, py) => {
+      add([west, py], [west - 0.015 * size, py]);
+      text(words, west - 1.5 * letter, py);
+    });
     text('x, east [m]', (west + east) / 2, south - 2.8 * letter);
     text('y, north [m]', west - 4.2 * letter, (south + north) / 2);
     this.axes.add(new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(points),
@@ -292,6 +306,11 @@ export class TerrainView {
     this.update(this.row, this.poses, true);
   }
 
+  setWholePath(whole) {
+    this.wholePath = whole;
+    this.update(this.row, this.poses, false);
+  }
+
   /// Shows the heights as they are, the paths up to `row` and the robots at `poses` (x, y, z, roll, pitch, yaw).
   /// `changed`: the surface is to be drawn anew.
   update(row, poses, changed) {
@@ -302,7 +321,7 @@ export class TerrainView {
       for (const robot of this.robots) robot.place(this.exaggeration, this.ride);
     }
     this.robots.forEach((robot, i) => {
-      robot.show(row);
+      robot.show(row, this.wholePath);
       const pose = poses[i];
       robot.body.visible = pose !== undefined;
       if (pose === undefined) return;

@@ -114,5 +114,16 @@ TEST(ChartSeries, TheAxisHoldsTheErrorBars) {
   EXPECT_DOUBLE_EQ(y.high, 6.1);
 }
 
+TEST(TickText, HasTheDigitsOfItsStepAndNoNegativeZero) {
+  EXPECT_EQ(tick_text(-0.0004, 2), "0.00");
+  EXPECT_EQ(tick_text(-0.0, 0), "0");
+  EXPECT_EQ(tick_text(-12345.6, 1), "\u221212\u2009345.6");
+  EXPECT_EQ(tick_text(-123.0, 0), "\u2212123");
+  const ChartAxis axis = enclosing_axis({-0.0003, 0.0004}, 5, 100.0, 0.0);
+  std::string texts;
+  for (const double tick : axis.ticks.values) texts += tick_text(tick, axis.ticks.decimals) + " ";
+  EXPECT_EQ(texts, "\u22120.0004 \u22120.0002 0.0000 0.0002 0.0004 ");
+}
+
 }  // namespace
 }  // namespace screed

@@ -45,11 +45,17 @@ TEST_F(LevelingPicture, SaysByHowMuchFromTheFirstPointToTheLast) {
   EXPECT_EQ(count(text, "<image"), 2U) << "before and after";
 }
 
-TEST_F(LevelingPicture, DrawsTransportWhereItWasMeasured) {
-  EXPECT_EQ(svg().find("transport left"), std::string::npos);
+TEST_F(LevelingPicture, DrawsTheWorkThatRemainsWhereItWasMeasured) {
+  EXPECT_EQ(svg().find("work remaining [%]"), std::string::npos);
   points_.front().progress = 0.0;
   points_.back().progress = 0.25;
-  EXPECT_NE(svg().find("transport left"), std::string::npos);
+  EXPECT_NE(svg().find("work remaining [%]"), std::string::npos);
+}
+
+TEST_F(LevelingPicture, HasItsUnitsInBrackets) {
+  EXPECT_EQ(count(svg(), ">height [mm]<"), 2U) << "of both maps";
+  for (const char* other : {"(mm)", "(m)", ", mm<", ", m<"})
+    EXPECT_EQ(count(svg(), other), 0U) << other;
 }
 
 TEST_F(LevelingPicture, OfLevelGroundSaysNoPerCent) {
