@@ -88,8 +88,10 @@ TEST_F(LevelBench, TheStandInLevelsAsThePhysicsDoes) {
 
 // Who is not armed moves nothing; who spins on peaks moves more than who walks.
 TEST_F(LevelBench, QuickRunsTheBaselines) {
-  const Result result = run("level bench --quick --seeds 2 --workers 2 --quiet --json --out b");
+  const Result result = run("level bench --quick --seeds 2 --workers 2 --json --out b");
   ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("\n12 runs to make, 2 at a time: about "), std::string::npos)
+      << result.err;
   const Json courses = Json::parse(result.out);
   ASSERT_EQ(courses.size(), 1U);
   EXPECT_EQ(courses[0]["course"], Json({"small", "rough", "gravel", "one", "fixes"}));

@@ -53,6 +53,13 @@ TEST_F(Interrupt, LayingParticles) {
   }
 }
 
+// A bed that will take minutes and much memory says so at once.
+TEST_F(Interrupt, ALargeBedHasSaidWhatItCosts) {
+  write_bed("big", 12.0);  // 480 x 480 stacks of 6
+  expect_stopped({"sim", "big.ini", "--quiet"}, "note: a large bed, at least 1.4 million particles",
+                 {SIGINT, 130}, "there is no run of it");
+}
+
 TEST_F(Interrupt, SettlingParticles) {
   write_bed("wide", 1.5);
   expect_stopped({"record", "wide.ini"}, "settling particles", {SIGINT, 130},

@@ -1,6 +1,7 @@
 // The program as a user meets it: bad input ends with one clear line, the right exit code, and
 // nothing left behind.
 #include "tests/sitl/program.h"
+#include "tests/sitl/terminal.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -58,6 +59,15 @@ TEST_F(Program, AModelOfOnesOwnDrives) {
   write("own.urdf", urdf("Body", "0.01"));
   write("e.ini", std::string(kShort) + "[vehicle]\nmodel = own.urdf\n");
   EXPECT_EQ(run("sim e.ini --quiet --no-pictures").exit_code, 0);
+}
+
+TEST_F(Program, KeysAreATableForPeopleOnATerminal) {
+  Terminal terminal({program_, "sim", "--keys"}, root_);
+  EXPECT_EQ(terminal.exit_code(), 0);
+  EXPECT_EQ(terminal.screen().rfind("key  ", 0), 0U) << terminal.screen().substr(0, 200);
+  EXPECT_EQ(terminal.screen().find("| "), std::string::npos);
+  const std::string programs = run("sim --keys").out;
+  EXPECT_EQ(programs.rfind("| key | unit | default | allowed | meaning |\n| --- |", 0), 0U);
 }
 
 // What pages say of keys, as `[map] edges` or `--set map.edges=walls`: there is such a key.

@@ -2,6 +2,7 @@
 #include "host_sim/run/world/world_setup.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -13,6 +14,7 @@
 
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/physics/terrain/elevation_file.h"
 #include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/physics/world/plant.h"
@@ -212,6 +214,48 @@ HeightField make_terrain(const Experiment& experiment) {
   set_trap(experiment, field);
   if (experiment.map.edge() == BedEdge::kWalled) field.add_walls();
   return field;
+}
+
+std::optional<std::string> large_bed_note(const Experiment& experiment, double least_cell_m) {
+  // As measured on one core of a server; another machine takes another time, hence `about`.
+  constexpr double kLargeCells = 1e7;
+  constexpr double kCellBytes = 65.0;
+  constexpr double kCellSetup_s = 7e-7;    // to lay the bed, and its figures before and after
+  constexpr double kCellMeasure_s = 1e-7;  // each [metrics] interval
+  constexpr double kDrive_s = 0.05;        // of a simulated second, of one robot
+  constexpr double kLargeParticles = 3e5;
+  constexpr double kParticleBytes = 900.0;
+  constexpr double kParticleSetup_s = 2e-4;
+  const auto& map = experiment.map;
+  if (!map.is_soil() && !map.of_particles()) return std::nullopt;
+  std::array<double, 2> pixels = {1.0, 1.0};
+  if (!map.filename.empty()) {
+    const GreyImage image =
+        read_grey_image(find_data_file(experiment, map.filename, "[map] filename"));
+    pixels = {static_cast<double>(image.width), static_cast<double>(image.height)};
+  }
+  const double longer = std::max(pixels[0], pixels[1]);
+  const double pixel_m = size_of_bed(experiment, static_cast<int>(longer)) / longer;
+  const double element_m =
+      map.is_soil() ? std::max(experiment.soil.cell_m, least_cell_m) : 2.0 * map.particle_radius_m;
+  const double x = std::round(pixels[0] * pixel_m / element_m);
+  const double y = std::round(pixels[1] * pixel_m / element_m);
+  if (map.is_soil()) {
+    const double cells = x * y;
+    if (cells < kLargeCells || std::max(x, y) >= kLargestImageSide) return std::nullopt;
+    return filled(
+        "a large bed, {:.0f} x {:.0f} = {*1e-6:.0f} million cells: about {*1e-9:.1f} GB of memory, "
+        "{:.0f} s to lay and measure it, {:.2g} s for a simulated second",
+        x, y, cells, kCellBytes * cells, kCellSetup_s * cells,
+        kDrive_s * experiment.robots.count +
+            kCellMeasure_s * cells / experiment.metrics.interval_s);
+  }
+  const double particles = x * y * std::max(1.0, experiment.particles.depth_m / element_m);
+  if (particles < kLargeParticles) return std::nullopt;
+  return filled(
+      "a large bed, at least {*1e-6:.1f} million particles: about {*1e-9:.1f} GB of memory, "
+      "{*0.0166667:.0f} min to lay them; a simulated second takes as long as particles move in it",
+      particles, kParticleBytes * particles, kParticleSetup_s * particles);
 }
 
 VehicleOptions vehicle_options(const Experiment& experiment, const std::string& board) {

@@ -48,6 +48,9 @@ SoilParameters make_soil(const Experiment& experiment);
 ParticleOptions make_particles(const Experiment& experiment);
 /// The terrain an experiment asks for; the surface that particles are laid up to.
 HeightField make_terrain(const Experiment& experiment);
+/// What a bed of very many cells or particles costs, as a sentence for the user before it is built;
+/// nothing of any other bed. `least_cell_m`: cells are no smaller.
+std::optional<std::string> large_bed_note(const Experiment& experiment, double least_cell_m = 0.0);
 /// How the robot is driven. Throws InputError for a board of unknown name.
 VehicleOptions vehicle_options(const Experiment& experiment, const std::string& board);
 /// What is each robot's own in an experiment, on a board of this name. Throws InputError for an

@@ -27,6 +27,7 @@
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/key_table.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/world_choice.h"
 
@@ -150,8 +151,7 @@ void print_plan(const Json& json) {
 
 int run_plan(const PlanArguments& arguments, const std::string& version) {
   if (arguments.list_keys) {
-    std::cout << "| key | unit | default | allowed | meaning |\n| --- | --- | --- | --- | --- |\n"
-              << campaign_key_table();
+    print_key_table(campaign_key_table());
     return 0;
   }
   if (arguments.campaign.file.empty()) throw UsageError("FILE is required");
@@ -194,6 +194,7 @@ int run_run(const RunArguments& arguments, const std::string& version) {
   CampaignJob job = arguments.shard.has_value() ? shard_job(arguments, campaign)
                                                 : whole_job(campaign, arguments.quiet);
   job.workers = worker_count(arguments.workers, plan, job.trial);
+  if (!arguments.quiet) note_work(campaign, job);
   const EngineOutcome outcome = execute(campaign, job, arguments.quiet);
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
 

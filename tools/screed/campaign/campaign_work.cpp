@@ -25,6 +25,7 @@
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/child_process.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/figures.h"
 #include "host_sim/core/json.h"
 #include "host_sim/engine/task_engine.h"
 #include "host_sim/engine/task_folder.h"
@@ -168,6 +169,48 @@ int worker_count(std::optional<int> wanted, const CampaignPlan& plan,
     std::cerr << "note: " << fit << " of " << asked << " workers: each needs " << memory_mb
               << " MB of memory\n";
   return fit;
+}
+
+namespace {
+
+/// Roughly: seconds, minutes or hours.
+std::string rough_time(double seconds) {
+  if (seconds < 90.0) return filled("{:.0f} s", seconds);
+  if (seconds < 5400.0) return filled("{:.0f} min", seconds / 60.0);
+  return filled("{:.1f} h", seconds / 3600.0);
+}
+
+std::string runs_text(size_t count) {
+  return std::to_string(count) + (count == 1 ? " run" : " runs");
+}
+
+}  // namespace
+
+std::string work_text(const CampaignPlan& plan, const std::vector<size_t>& missing, int workers,
+                      const std::optional<CampaignTrial>& trial) {
+  std::string text = runs_text(missing.size());
+  if (missing.size() < plan.run_count()) text += " of " + std::to_string(plan.run_count());
+  text += " to make, " + std::to_string(workers) + " at a time";
+  if (!trial.has_value()) return text;
+  double all_s = 0.0;
+  double longest_s = 0.0;
+  for (const size_t run : missing) {
+    all_s += trial->mean_s(plan.duration_of(run));
+    longest_s = std::max(longest_s, trial->greatest_s(plan.duration_of(run)));
+  }
+  return text + ": about " + rough_time(std::max(all_s / workers, longest_s)) + ", the longest " +
+         rough_time(longest_s) + " (a guess from short trials of " +
+         runs_text(trial->costs.size()) + ")";
+}
+
+void note_work(const ChosenCampaign& campaign, const CampaignJob& job) {
+  const ResultIndex results(campaign.folder.results());
+  std::vector<size_t> missing;
+  for (const size_t run : job.runs) {
+    if (!results.done(campaign.plan.ids[run])) missing.push_back(run);
+  }
+  if (!missing.empty())
+    std::cerr << work_text(campaign.plan, missing, job.workers, job.trial) << "\n";
 }
 
 void show_failures(const EngineOutcome& outcome) {

@@ -61,6 +61,12 @@ CampaignJob whole_job(const ChosenCampaign& campaign, bool quiet);
 /// note says so.
 int worker_count(std::optional<int> wanted, const CampaignPlan& plan,
                  const std::optional<CampaignTrial>& trial);
+/// How many runs are still to be made by so many workers, and about how long that takes: what a
+/// trial showed, if there was one.
+std::string work_text(const CampaignPlan& plan, const std::vector<size_t>& missing, int workers,
+                      const std::optional<CampaignTrial>& trial);
+/// It on standard error, before the work begins; nothing where none is left.
+void note_work(const ChosenCampaign& campaign, const CampaignJob& job);
 /// Executes the runs, with a bar unless `quiet`.
 EngineOutcome execute(const ChosenCampaign& campaign, CampaignJob job, bool quiet);
 /// The first of the failures, on standard error.

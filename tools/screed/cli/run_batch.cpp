@@ -15,6 +15,7 @@
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/experiment/experiment_table.h"
 #include "host_sim/run/session/run_folder.h"
+#include "host_sim/run/world/world_setup.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
@@ -123,6 +124,8 @@ void check_all(const std::vector<Experiment>& experiments, SimulationOptions opt
 
 SimulationSummary run_one(const Experiment& experiment, SimulationOptions options, bool quiet,
                           const std::string& label) {
+  if (const auto note = large_bed_note(experiment, options.least_cell_m); note.has_value())
+    std::cerr << "note: " << label << *note << "\n";
   TaskBar setup_bar(quiet, label);
   options.setup_progress = setup_bar.progress();
   std::optional<ProgressBar> bar;

@@ -184,6 +184,7 @@ int run_bench(const BenchArguments& arguments, const std::string& version) {
   const CampaignLock lock(campaign.folder);
   CampaignJob job = whole_job(campaign, arguments.quiet);
   job.workers = worker_count(arguments.workers, plan, job.trial);
+  if (!arguments.quiet) note_work(campaign, job);
   const EngineOutcome outcome = execute(campaign, job, arguments.quiet);
   show_failures(outcome);
   if (interrupted()) {

@@ -15,6 +15,7 @@
 #include "host_sim/run/simulation/simulation.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/key_table.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/run_batch.h"
 #include "tools/screed/cli/world_choice.h"
@@ -184,8 +185,7 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
 
 int run_sim(const SimArguments& arguments, const std::string& version) {
   if (arguments.list_keys) {
-    std::cout << "| key | unit | default | allowed | meaning |\n| --- | --- | --- | --- | --- |\n"
-              << experiment_key_table() << robot_section_table();
+    print_key_table(experiment_key_table() + robot_section_table());
     return 0;
   }
   if (arguments.runs.files.empty()) throw UsageError("FILE is required");

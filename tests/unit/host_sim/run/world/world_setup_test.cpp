@@ -73,6 +73,40 @@ TEST(ParticlesOfAnExperiment, RefuseWhatIsNoNumberOfThreads) {
   }
 }
 
+// What a bed costs, said of a really large one only.
+
+Experiment bed_of(const char* model, double size_m) {
+  Experiment experiment;
+  experiment.map.model = model;
+  experiment.map.size_m = size_m;
+  return experiment;
+}
+
+TEST(LargeBed, OfManyCellsSaysItsCost) {
+  Experiment bed = bed_of("scm", 40.0);  // 8000 x 8000 of 5 mm
+  EXPECT_EQ(large_bed_note(bed),
+            "a large bed, 8000 x 8000 = 64 million cells: about 4.2 GB of memory, 45 s to lay and "
+            "measure it, 0.26 s for a simulated second");
+  bed.soil.cell_m = 0.02;
+  EXPECT_EQ(large_bed_note(bed), std::nullopt);
+  bed.soil.cell_m = 0.005;
+  EXPECT_EQ(large_bed_note(bed, 0.02), std::nullopt) << "the stand-in has wider cells";
+}
+
+TEST(LargeBed, OfManyParticlesSaysItsCost) {
+  // 400 x 400 stacks of 4: 640000.
+  EXPECT_EQ(large_bed_note(bed_of("particles", 10.0)),
+            "a large bed, at least 0.6 million particles: about 0.6 GB of memory, 2 min to lay "
+            "them; a simulated second takes as long as particles move in it");
+  EXPECT_EQ(large_bed_note(bed_of("particles", 3.0)), std::nullopt);
+}
+
+TEST(LargeBed, OfUsualSizeSaysNothing) {
+  EXPECT_EQ(large_bed_note(bed_of("scm", 6.0)), std::nullopt);
+  EXPECT_EQ(large_bed_note(bed_of("rigid", 1000.0)), std::nullopt);
+  EXPECT_EQ(large_bed_note(bed_of("scm", 100.0)), std::nullopt) << "which is refused: too many";
+}
+
 }  // namespace
 
 }  // namespace screed

@@ -13,6 +13,28 @@
 namespace screed {
 namespace {
 
+// What is said before the runs of a campaign begin.
+TEST(WorkText, SaysHowManyRunsAndAboutHowLong) {
+  CampaignPlan plan;
+  plan.cells.resize(2);
+  plan.durations_s = {600.0, 1200.0};
+  plan.settings.seeds = {1, 2, 3};
+  CampaignTrial trial;
+  trial.costs = {{1.0, 0.1, 4.0}, {2.0, 0.3, 3.0}};  // means: 5 s, and 0.2 s for a second
+  // Runs of 125 s and of 245 s, at most 185 s and 365 s.
+  EXPECT_EQ(work_text(plan, {0, 1, 2, 3, 4, 5}, 2, trial),
+            "6 runs to make, 2 at a time: about 9 min, the longest 6 min (a guess from short "
+            "trials of 2 runs)");
+  EXPECT_EQ(work_text(plan, {3}, 4, trial),
+            "1 run of 6 to make, 4 at a time: about 6 min, the longest 6 min (a guess from short "
+            "trials of 2 runs)");
+  trial.costs = {{0.0, 20.0, 0.0}};  // 200 and 400 min: 10 h on a worker each
+  EXPECT_EQ(work_text(plan, {0, 1, 2, 3}, 1, trial),
+            "4 runs of 6 to make, 1 at a time: about 16.7 h, the longest 6.7 h (a guess from short "
+            "trials of 1 run)");
+  EXPECT_EQ(work_text(plan, {0, 1}, 2, std::nullopt), "2 runs of 6 to make, 2 at a time");
+}
+
 TEST(Slurm, TimesAreWholeMinutesUp) {
   EXPECT_EQ(slurm::time_text(1.0), "0-00:01:00");
   EXPECT_EQ(slurm::time_text(60.0), "0-00:01:00");
