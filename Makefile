@@ -20,7 +20,7 @@ PACKAGE_LISTS := tools/debian-packages.txt \
     $(filter arm64,$(BUILD)),tools/arm64/debian-packages.txt)) \
   $(call packages_for,test-can,tests/can) $(call packages_for,test-slurm,tests/slurm) \
   $(call packages_for,test-python,tests/python) $(call packages_for,test-report,tests/report) \
-  $(call packages_for,camera test-camera,tools/camera) \
+  $(call packages_for,camera test-camera,tools/camera) $(call packages_for,pictures,tools/pictures) \
   $(if $(shell command -v npm),,$(call packages_for,build report-page install test-install test-report,tools/report))
 BUILD_FILES := Makefile $(sort $(wildcard $(addsuffix /*.mk,tools/build hal/avr nn/* tests tests/* tools/* tools/*/*)))
 
@@ -61,6 +61,7 @@ include tests/python/python.mk
 include tests/limits/limits.mk
 include tests/portable/portable.mk
 include tools/camera/camera.mk
+include tools/pictures/pictures.mk
 include tests/processors/processors.mk
 include tests/report/report_tests.mk
 include tests/asan.mk

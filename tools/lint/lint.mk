@@ -44,7 +44,8 @@ $(AVR_TIDY): $(B)/tidy/%.tidy: %.cpp $(FIRMWARE_BUILD)/%.o $(B)/avr.flags .clang
 
 # Checks of a moment come first.
 .PHONY: lint check check-format check-includes check-words check-root check-one-source check-pages format
-check: check-root check-format check-includes check-words check-one-source check-pages check-telemetry-page
+check: check-root check-format check-includes check-words check-one-source check-pages check-pictures \
+  check-telemetry-page
 check:  ## formatting, layers, words, links: the checks of seconds
 lint: check $(TIDY) $(AVR_TIDY)  ## the same and static analysis
 	@echo "lint: clean"
