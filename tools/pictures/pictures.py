@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the pictures of the pages as pictures.ini says (`make`), looks whether their sources have changed since they were
-made (`check`, which draws nothing), or notes that a change of the sources changes no picture (`accept`).
+"""Makes the pictures of the pages as pictures.ini says (`make`), looks whether their sources have changed since then
+(`check`, which draws nothing), or notes that a change of the sources changes no picture (`accept`).
 
 made.txt has a line a picture: the hash of its sources and of how it is made, its own hash, its path. Comments and white
 space of a source do not count, and of a test only the content hashes of runs that it expects: these change whenever a
