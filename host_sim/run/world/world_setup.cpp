@@ -2,7 +2,6 @@
 #include "host_sim/run/world/world_setup.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -56,6 +55,15 @@ double size_of_bed(const Experiment& experiment, int pixels) {
   return (map.wrap() ? pixels : pixels - 1) * *map.xy_scale;
 }
 
+/// The length of the longer side of a bed of so many heights, by their file's cells where it has
+/// some.
+double size_of_bed(const Experiment& experiment, const Elevation& elevation) {
+  const int longer = std::max(elevation.width, elevation.height);
+  if (!elevation.cell_m.has_value() || experiment.map.xy_scale.has_value())
+    return size_of_bed(experiment, longer);
+  return *elevation.cell_m * (experiment.map.wrap() ? longer : longer - 1);
+}
+
 /// The bed that a file holds.
 HeightField terrain_of(const Experiment& experiment, const std::filesystem::path& file) {
   const auto& map = experiment.map;
@@ -70,7 +78,6 @@ HeightField terrain_of(const Experiment& experiment, const std::filesystem::path
     return HeightField::from_image(image, options);
   }
   const Elevation elevation = read_elevation(file);
-  const int longer = std::max(elevation.width, elevation.height);
   const bool is_of_file = elevation.cell_m.has_value() && !map.xy_scale.has_value();
   const std::string where = "[map] filename = " + map.filename + ": ";
   if (map.scale_m != MapSection().scale_m) {
@@ -83,8 +90,7 @@ HeightField terrain_of(const Experiment& experiment, const std::filesystem::path
                      "it says how wide its cells are, so size does not apply; xy_scale "
                      "gives its cells another width");
   }
-  options.size_m = is_of_file ? *elevation.cell_m * (map.wrap() ? longer : longer - 1)
-                              : size_of_bed(experiment, longer);
+  options.size_m = size_of_bed(experiment, elevation);
   try {
     return HeightField::from_heights(elevation.width, elevation.height, elevation.heights_m,
                                      options);
@@ -228,18 +234,21 @@ std::optional<std::string> large_bed_note(const Experiment& experiment, double l
   constexpr double kParticleSetup_s = 2e-4;
   const auto& map = experiment.map;
   if (!map.is_soil() && !map.of_particles()) return std::nullopt;
-  std::array<double, 2> pixels = {1.0, 1.0};
+  Elevation nodes{1, 1, {}, {}};
   if (!map.filename.empty()) {
-    const GreyImage image =
-        read_grey_image(find_data_file(experiment, map.filename, "[map] filename"));
-    pixels = {static_cast<double>(image.width), static_cast<double>(image.height)};
+    const std::filesystem::path file = find_data_file(experiment, map.filename, "[map] filename");
+    if (is_elevation_file(file)) {
+      nodes = read_elevation(file);
+    } else {
+      const GreyImage image = read_grey_image(file);
+      nodes = {image.width, image.height, {}, {}};
+    }
   }
-  const double longer = std::max(pixels[0], pixels[1]);
-  const double pixel_m = size_of_bed(experiment, static_cast<int>(longer)) / longer;
+  const double pixel_m = size_of_bed(experiment, nodes) / std::max(nodes.width, nodes.height);
   const double element_m =
       map.is_soil() ? std::max(experiment.soil.cell_m, least_cell_m) : 2.0 * map.particle_radius_m;
-  const double x = std::round(pixels[0] * pixel_m / element_m);
-  const double y = std::round(pixels[1] * pixel_m / element_m);
+  const double x = std::round(nodes.width * pixel_m / element_m);
+  const double y = std::round(nodes.height * pixel_m / element_m);
   if (map.is_soil()) {
     const double cells = x * y;
     if (cells < kLargeCells || std::max(x, y) >= kLargestImageSide) return std::nullopt;
