@@ -48,7 +48,8 @@ GCC_HEAP = $(if $(findstring clang,$(CXX)),,--param=ggc-min-heapsize=524288)
 COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fno-math-errno -I. \
   -I$(BUILD_ROOT)/generated
 
-PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng libtiff-4 stb cairo inih CLI11 nlohmann_json libxxhash ncursesw
+PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng libtiff-4 stb cairo inih CLI11 nlohmann_json libxxhash \
+  ncursesw
 TEST_PACKAGES := gtest_main mpfr
 BENCH_PACKAGES := benchmark
 # Headers of these are known to single files.

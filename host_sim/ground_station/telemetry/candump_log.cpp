@@ -101,7 +101,7 @@ uint64_t LogClock::add(uint64_t time_us, uint64_t line) {
   const uint64_t latest_us = latest_us_.value_or(time_us);
   const bool back = time_us < latest_us;
   const uint64_t step_us = back ? latest_us - time_us : time_us - latest_us;
-  if (back && step_us < kLeastStepBack_us) return 0;
+  if (back && step_us < kMinStepBack_us) return 0;
   latest_us_ = time_us;
   if (!back && step_us <= kLongestSilence_us) {
     elapsed_us_ += step_us;

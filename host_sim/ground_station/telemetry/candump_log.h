@@ -77,7 +77,7 @@ class CandumpReader {
 class LogClock {
  public:
   /// A step back by less is two interfaces' frames out of order; the latest time stands.
-  static constexpr uint64_t kLeastStepBack_us = 1'000'000;
+  static constexpr uint64_t kMinStepBack_us = 1'000'000;
   /// Robots are never silent for longer: a clock that was set ahead, or a recording that paused.
   static constexpr uint64_t kLongestSilence_us = 60'000'000;
 

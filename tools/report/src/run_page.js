@@ -55,7 +55,8 @@ function reliefText(terrain) {
 function header(page, facts) {
   page.append(element('h1', {}, facts.title));
   if (!facts.complete) page.append(
-    element('p', { class: 'warning' }, facts.running ? 'The run goes on: this is what was saved when this page was made.' :
+    element('p', { class: 'warning' }, facts.running ?
+      'The run goes on: this is what was saved when this page was made.' :
       'The recorded run did not end: this is what was written until then.'));
   const relief = reliefText(facts.terrain);
   if (relief !== null) page.append(element('p', { class: 'relief' }, relief));

@@ -26,7 +26,7 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr long kTickMs = 10;
 // A tenth of gravity: nothing on Earth is moved so that it feels less for a whole recording.
-constexpr double kLeastMeanAcceleration = 410.0;
+constexpr double kMinMeanAcceleration = 410.0;
 
 /// A rotation on the host: w, x, y, z, unit length.
 using Rotation = std::array<double, 4>;
@@ -240,7 +240,7 @@ AttitudeScore score_attitude(const std::string& file, bool si) {
     heading += error.heading_deg * error.heading_deg;
     ++score.samples;
   }
-  if (rows > 0 && acceleration / static_cast<double>(rows) < kLeastMeanAcceleration) {
+  if (rows > 0 && acceleration / static_cast<double>(rows) < kMinMeanAcceleration) {
     throw InputError(
         filled("{}: ax,ay,az are {:.1f} counts long on average, and 1 g is 4098 of them; {}", file,
                acceleration / static_cast<double>(rows),

@@ -69,18 +69,18 @@ void Diagnostic::fault_at_row(int row, const std::string& what) {
 }
 
 void Diagnostic::stop_at_faults() const {
-  constexpr std::size_t kMostShown = 20;
+  constexpr std::size_t kMaxShown = 20;
   if (faults_.empty()) return;
   std::vector<Fault> sorted = faults_;
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const Fault& a, const Fault& b) { return a.row < b.row; });
   std::string all;
-  for (std::size_t i = 0; i < std::min(sorted.size(), kMostShown); ++i) {
+  for (std::size_t i = 0; i < std::min(sorted.size(), kMaxShown); ++i) {
     all += all.empty() ? "" : "\n";
     all += sorted[i].text;
   }
-  if (sorted.size() > kMostShown) {
-    all += "\n" + file_.string() + ": and " + std::to_string(sorted.size() - kMostShown) + " more";
+  if (sorted.size() > kMaxShown) {
+    all += "\n" + file_.string() + ": and " + std::to_string(sorted.size() - kMaxShown) + " more";
   }
   throw InputError(all);
 }
