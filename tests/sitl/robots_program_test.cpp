@@ -204,7 +204,7 @@ TEST_F(SeveralRobots, WhatCannotBeRunIsRefusedByOneLine) {
   expect_refused("--set robots.count=2 --set 'robots.places=0 0, 0.5 0 0'", "x y heading");
   expect_refused("--set robots.count=30 --set robots.placement=random", "found no places");
   expect_refused("--set robots.count=2 --set experiment.algorithm=training_drive", "one robot");
-  expect_refused("--set robots.count=2 --set robot_2.x=1", "[robot_2]: [robots] count = 2");
+  expect_refused("--set robots.count=2 --set robot_2.x=1", "[robot_2] x: [robots] count = 2");
 }
 
 }  // namespace

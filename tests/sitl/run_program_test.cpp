@@ -393,7 +393,9 @@ TEST_F(BatchTable, NothingIsRunWhenARowIsWrong) {
                  {"wrong.csv:3: row 'bad', column 'vehicle.h'", "expected a number -360..360"});
   write("image.csv", "experiment.name,map.filename\ngood,\nbad,nothing.png\n");
   expect_refused(run("record level.ini --table image.csv"), 2,
-                 {"experiment bad: [map] filename = 'nothing.png'", "no such file"});
+                 {"experiment bad: image.csv:3: row 'bad', column 'map.filename': [map] filename = "
+                  "'nothing.png'",
+                  "no such file"});
   expect_refused(run("record level.ini --table none.csv"), 2, {"none.csv: no such table"});
   expect_refused(run("record level.ini level.ini --table level.csv"), 2,
                  {"--table needs one FILE"});

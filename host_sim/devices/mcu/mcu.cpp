@@ -317,6 +317,7 @@ void Mcu::wait_for_debugger(int port) {
   if (avr_gdb_init(avr_) != 0)
     throw RunError("--gdb " + std::to_string(port) + ": the port cannot be listened on");
   avr_->state = cpu_Stopped;
+  avr_->run_cycle_limit = 1;  // a look for breakpoints before each instruction
 }
 
 void Mcu::request_stop() {

@@ -174,9 +174,10 @@ void note_idle_sections(Experiment& experiment) {
     const auto place = experiment.places.find(full_name(key.section, key.name));
     if (place == experiment.places.end() || key.name == "wall_friction") continue;
     if (!decides_nothing(key, experiment.map) || !noted.insert(key.section).second) continue;
-    experiment.notes.push_back(
-        place->second + ": " + full_name(key.section, key.name) +
-        " and its like decide nothing with [map] model = " + experiment.map.model);
+    const std::string what =
+        key.section == "map" ? full_name(key.section, key.name) : "[" + key.section + "]";
+    experiment.notes.push_back(place->second + ": " + what +
+                               " decides nothing with [map] model = " + experiment.map.model);
   }
 }
 

@@ -124,7 +124,8 @@ void check_all(const std::vector<Experiment>& experiments, SimulationOptions opt
 
 SimulationSummary run_one(const Experiment& experiment, SimulationOptions options, bool quiet,
                           const std::string& label) {
-  if (const auto note = large_bed_note(experiment, options.least_cell_m); note.has_value())
+  const bool can_run = !options.image.has_value() || std::filesystem::exists(*options.image);
+  if (const auto note = large_bed_note(experiment, options.least_cell_m); can_run && note)
     std::cerr << "note: " << label << *note << "\n";
   TaskBar setup_bar(quiet, label);
   options.setup_progress = setup_bar.progress();

@@ -40,8 +40,10 @@ struct Row {
 /// What a count of gyroscope, accelerometer and magnetometer is worth in the units of a recording.
 using CountSizes = std::array<double, 3>;
 constexpr CountSizes kInCounts = {1.0, 1.0, 1.0};
-// 70 mdps in rad/s, 0.244 mg in m/s2, 0.160 mG in T (data sheets of L3GD20H and LSM303D).
-constexpr CountSizes kInSi = {0.07 / kDegrees, 0.244e-3 * kGravity_m_per_s2, 0.160e-7};
+// 70 mdps in rad/s, 0.244 mg in m/s2 (data sheets of L3GD20H and LSM303D). A magnetometer's unit is
+// free, since its direction counts and how its strength changes: the first row decides.
+constexpr CountSizes kInSi = {0.07 / kDegrees, 0.244e-3 * kGravity_m_per_s2, 0.0};
+constexpr double kFieldOfEarth = 3125.0;  // counts of 0.160 mG: 50 uT
 
 /// Reads one recording, line by line.
 class RecordingReader {
@@ -65,6 +67,11 @@ class RecordingReader {
            std::to_string(names_.size()));
     }
     check_time();
+    if (sizes_[2] == 0.0) {
+      const auto mag = [this](std::size_t i) { return number<double>(field(i), kNames[i]); };
+      sizes_[2] = std::hypot(mag(6), mag(7), mag(8)) / kFieldOfEarth;
+      if (!(sizes_[2] > 0.0)) fail("the magnetic field mx,my,mz is 0");
+    }
     Row row{};
     for (std::size_t i = 0; i < 3; ++i) {
       row.sample.imu.gyro()[i] = count(i);
@@ -244,7 +251,7 @@ AttitudeScore score_attitude(const std::string& file, bool si) {
     throw InputError(
         filled("{}: ax,ay,az are {:.1f} counts long on average, and 1 g is 4098 of them; {}", file,
                acceleration / static_cast<double>(rows),
-               "for rad/s, m/s2 and T, as ROS writes them, say --units si"));
+               "for rad/s and m/s2, as ROS writes them, say --units si"));
   }
   if (score.samples == 0) {
     throw InputError(file +
@@ -288,8 +295,10 @@ void register_attitude_command(Command& root, Program& program) {
   command.add_option("FILES", options.files, "CSV recordings (format: docs/attitude.md)")
       ->required();
   command
-      .add_option("--units", options.units,
-                  "Units of the recordings: counts of the sensors, or rad/s, m/s2 and T")
+      .add_option(
+          "--units", options.units,
+          "Units of the recordings: counts of the sensors, or rad/s and m/s2, with any unit of "
+          "the magnetic field")
       ->one_of({"counts", "si"})
       ->show_default();
   command.add_flag("--json", options.json, "Print JSON");

@@ -213,6 +213,34 @@ TEST_F(ExperimentFile, ValuesBeyondTheirEndsAreRefused) {
   }
 }
 
+TEST_F(ExperimentFile, ASectionForAnotherGroundIsNotedOnce) {
+  const Experiment rigid = read("[soil]\nE = 1e6\nn = 1\n[map]\nparticle_radius = 0.02\n");
+  ASSERT_EQ(rigid.notes.size(), 2U);
+  EXPECT_TRUE(contains(rigid.notes[0],
+                       ":5: [map] particle_radius decides nothing with [map] model = rigid"))
+      << rigid.notes[0];
+  EXPECT_TRUE(contains(rigid.notes[1], ": [soil] decides nothing with [map] model = rigid"))
+      << rigid.notes[1];
+  EXPECT_TRUE(read("[map]\nmodel = scm\n[soil]\nE = 1e6\n").notes.empty());
+}
+
+TEST_F(ExperimentFile, ErrorsOfTheWorldGetThePlaceOfTheKeyThatTheyName) {
+  const Experiment experiment = read("[map]\nsize = 2\n\n[vehicle]\nx = 1\n");
+  const auto placed = [&](const char* what) {
+    std::string text = with_place(experiment, InputError(what)).what();
+    const size_t at = text.find(path().string());
+    if (at != std::string::npos) text.replace(at, path().string().size(), "FILE");
+    return text;
+  };
+  EXPECT_EQ(placed("[vehicle] x = 1 is in a wall"), "FILE:5: [vehicle] x = 1 is in a wall");
+  EXPECT_EQ(placed("a wall ([vehicle] y, [map] size)"), "FILE:2: a wall ([vehicle] y, [map] size)");
+  EXPECT_EQ(placed("[vehicle] y = 1 is in a wall"), "FILE: [vehicle] y = 1 is in a wall");
+  EXPECT_EQ(placed("out: the folder is not empty"), "out: the folder is not empty");
+  // Said once, however often it passes by.
+  EXPECT_STREQ(with_place(experiment, with_place(experiment, InputError("[vehicle] x"))).what(),
+               with_place(experiment, InputError("[vehicle] x")).what());
+}
+
 TEST_F(ExperimentFile, UnknownNamesSayWhatIsKnown) {
   EXPECT_EQ(error_message("[drive]\nsped = 1\n"),
             "FILE:2: unknown key 'sped' in [drive]; known are speed, yaw_rate");
