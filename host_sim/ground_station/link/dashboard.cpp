@@ -1,6 +1,5 @@
 // The page that `screed monitor` shows: rows of values, and their layouts.
 #include "host_sim/ground_station/link/dashboard.h"
-#include "host_sim/core/figures.h"
 
 #include <algorithm>
 #include <cmath>

@@ -128,8 +128,8 @@ std::string ApiGuess::feed(std::span<const uint8_t> bytes, uint64_t received) {
     if (other.found < kSure || other.found <= received) continue;
     if (!other.mode.has_value())
       return "lines of a transparent module come in: leave out --api, or set the module's AP to 1";
-    const std::string mode = *other.mode == XbeeApiMode::kPlain ? "1" : "2";
-    return "packets of API mode " + mode + " come in: --api " + mode + " reads them";
+    return *other.mode == XbeeApiMode::kPlain ? "packets of API mode 1 come in: --api 1 reads them"
+                                              : "packets of API mode 2 come in: --api 2 reads them";
   }
   if (received == 0 && bytes_ >= kBytesOfNoise && 4 * odd_bytes_ > bytes_)
     return "bytes come in that are no lines: does --baud fit the module?";

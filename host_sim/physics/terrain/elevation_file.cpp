@@ -88,7 +88,10 @@ Elevation read_asc(const fs::path& path, std::ifstream& file) {
     const std::string key = lower_case(word);
     file >> word;
     const std::optional<double> value = number_of(word);
-    if (!value.has_value()) reject(path, key + " is '" + word + "', a number is needed");
+    if (!value.has_value()) {
+      std::string what = key;
+      reject(path, what.append(" is '").append(word).append("', a number is needed"));
+    }
     if (key == "ncols") width = *value;
     if (key == "nrows") height = *value;
     if (key == "cellsize") elevation.cell_m = *value;

@@ -300,7 +300,7 @@ Answer run(const std::string& command) {
   if (file < 0) throw RunError(errors + ": cannot be made: " + std::strerror(errno));
   close(file);
   const ShellOutput output = shell_output(command + " 2>" + slurm::quoted(errors));
-  const Answer answer{output.exit_code, output.text, read_text(errors)};
+  Answer answer{output.exit_code, output.text, read_text(errors)};
   std::error_code ignored;
   fs::remove(errors, ignored);
   return answer;
