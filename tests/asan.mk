@@ -21,7 +21,7 @@ ASAN_UNIT := command command_key command_session corruption ground_station host_
   supervisor supervisor_fault telemetry track_slip
 # Files: logs, schemas, experiments, images, meshes, robots, sessions, models, listings of an image.
 ASAN_UNIT += attitude_command avr_order avr_stack board_table candump_log content_hash decode \
-  experiment grey_image half_written height_field height_series ini_file json model_file network \
+  elevation_file experiment grey_image half_written height_field height_series ini_file json model_file network \
   picture run_folder schema schema_compiler session session_csv session_damage \
   session_replay urdf urdf_refusal urdf_roles urdf_body
 # Grids that a position indexes.

@@ -15,6 +15,7 @@ FUZZ_PROGRAMS := $(FUZZ_TARGETS:%=$(FUZZ_BUILD)/%)
 FUZZ_LIBRARY_SOURCES := firmware/protocol/slcan.cpp firmware/protocol/e2e.cpp \
   host_sim/ground_station/link/xbee_api.cpp \
   $(addprefix host_sim/ground_station/telemetry/,schema.cpp candump_line.cpp candump_log.cpp) \
+  $(addprefix host_sim/core/,figures.cpp json.cpp json_text.cpp) \
   $(SCHEMA_LIBRARY_SOURCES)
 FUZZ_LIBRARY_OBJECTS := $(FUZZ_LIBRARY_SOURCES:%.cpp=$(FUZZ_BUILD)/%.o)
 FUZZ_FLAGS := -std=c++20 -O2 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer \
