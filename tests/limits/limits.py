@@ -106,7 +106,7 @@ def run(screed, name, sets):
                                   timeout=600)
         except subprocess.TimeoutExpired:
             return "slow", "not done in 600 s"
-        said = done.stderr.strip()
+        said = without_notes(done.stderr)
         if done.returncode < 0:
             return "FAIL", signal.Signals(-done.returncode).name
         if done.returncode != 0:
@@ -124,6 +124,11 @@ def run(screed, name, sets):
         return "ran", f"lift {lift:.3g} m"
 
 
+def without_notes(text):
+    """What a program says beside its notes, which may come before the one line of an error."""
+    return "\n".join(line for line in text.strip().splitlines() if not line.startswith("note: "))
+
+
 def run_short_of_memory(screed, experiment, megabytes):
     """Runs one with so much address space; returns its verdict."""
     with tempfile.TemporaryDirectory() as folder:
@@ -131,7 +136,7 @@ def run_short_of_memory(screed, experiment, megabytes):
         done = subprocess.run([screed, "sim", experiment, "--quiet", "--duration", "1", "--out", folder + "/run"],
                               capture_output=True, text=True, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
-        said = done.stderr.strip()
+        said = without_notes(done.stderr)
         if done.returncode not in (0, 1, 127) or "\n" in said or (done.returncode == 1 and not said):
             return "FAIL", f"exit {done.returncode}: {said}"
         if any(pathlib.Path(folder).rglob("*.partial")):
