@@ -125,8 +125,9 @@ def run(screed, name, sets):
 
 
 def without_notes(text):
-    """What a program says beside its notes, which may come before the one line of an error."""
-    return "\n".join(line for line in text.strip().splitlines() if not line.startswith("note: "))
+    """What a program says beside its notes, which may come before the one line of an error, or be it."""
+    lines = text.strip().splitlines()
+    return "\n".join([line for line in lines if not line.startswith("note: ")] or lines)
 
 
 def run_short_of_memory(screed, experiment, megabytes):
