@@ -32,8 +32,8 @@ class RecordProgram : public Program {
   static std::string experiment(const std::string& name, const std::string& model, int frames) {
     return "[vehicle]\nh = 30\nx = 0.3\n[map]\nfilename = hills.png\nsize = 1.28\nscale = 0.03\n"
            "edges = wrap\nmodel = " +
-           model + "\n[soil]\ncell = 0.01\n[experiment]\nname = " + name +
-           "\nframes = " + std::to_string(frames) + "\n";
+           model + (model == "scm" ? "\n[soil]\ncell = 0.01" : "") +
+           "\n[experiment]\nname = " + name + "\nframes = " + std::to_string(frames) + "\n";
   }
 
   /// What a program prints; the test fails when it does not end well.
