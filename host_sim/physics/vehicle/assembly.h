@@ -107,7 +107,7 @@ Inertia transformed(const Eigen::Isometry3d& frame, const Inertia& inertia);
 /// theorem (Huygens-Steiner):
 ///   I = sum R_i I_i R_i^T + m_i (|d_i|^2 E - d_i d_i^T)
 ///   d_i = c_i - c,  c = sum m_i c_i / sum m_i
-/// Massless parts add nothing; without any mass the result is an Inertia{}.
+/// Massless parts add their moments alone; without any mass the result is an Inertia{}.
 Inertia compose(const std::vector<Inertia>& parts);
 
 /// The bodies that move as one with `body`: itself and everything reachable over fixed joints, in

@@ -320,7 +320,7 @@ namespace {
 std::string elsewhere(const std::string& name, const std::string& where) {
   std::string text;
   for (const ExperimentKey& key : experiment_keys()) {
-    if (key.name != name || key.section.starts_with("robot_")) continue;
+    if (key.name != name || key.section.empty() || key.section.starts_with("robot_")) continue;
     text += text.empty() ? "; did you mean " : " or ";
     text += where == "--set" ? key.section + "." + name : "[" + key.section + "] " + name;
   }

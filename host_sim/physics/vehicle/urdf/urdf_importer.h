@@ -35,9 +35,9 @@ struct UrdfOptions {
 };
 
 /// Reads `file`. Mesh files are searched relative to its folder.
-/// Throws InputError, one line with the file, the line in it and the element, for everything that
-/// is wrong with the file, the meshes it names or the options. Writes nothing to stdout or stderr.
-/// Does not depend on the locale.
+/// Throws InputError for everything that is wrong with the file, the meshes it names or the
+/// options: a line for each fault that can be found at once, with the file, the line in it and the
+/// element. Writes nothing to stdout or stderr. Does not depend on the locale.
 Assembly import_urdf(const std::filesystem::path& file, const UrdfOptions& options = {});
 
 }  // namespace screed
