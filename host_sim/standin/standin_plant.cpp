@@ -249,19 +249,21 @@ StandInPlant::StandInPlant(const HeightField& terrain, const Assembly& model,
   for (const StartPose& start : options.starts) {
     robots_.push_back(
         std::make_unique<StandInRobot>(ground_, robots_.size(), kind, *options.soil, fit, start));
-    check_apart(start);
+    check_apart(start, options.starts.size());
   }
 }
 
-void StandInPlant::check_apart(const StartPose& start) const {
+void StandInPlant::check_apart(const StartPose& start, size_t starts) const {
   const StandInRobot& last = *robots_.back();
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& corner : last.corners()) box.extend(corner);
-  check_between_walls(bounds_of(ground_.surface()), box, {start.x_m, start.y_m});
+  check_between_walls(bounds_of(ground_.surface()), box, {start.x_m, start.y_m}, robots_.size() - 1,
+                      starts);
   for (std::size_t i = 0; i + 1 < robots_.size(); ++i) {
     if (!overlap(last, *robots_[i], terrain()).has_value()) continue;
-    throw InputError("robots " + std::to_string(i) + " and " + std::to_string(robots_.size() - 1) +
-                     " stand in one another at the start");
+    throw InputError("[robots] count = " + std::to_string(starts) + " puts robots " +
+                     std::to_string(i) + " and " + std::to_string(robots_.size() - 1) +
+                     " into one another; put them further apart");
   }
 }
 

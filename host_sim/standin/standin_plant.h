@@ -122,7 +122,7 @@ class StandInPlant final : public Environment {
  private:
   static constexpr int kStepsPerTick = 5;  // of motors and battery
 
-  void check_apart(const StartPose& start) const;
+  void check_apart(const StartPose& start, size_t starts) const;
   void push_from_walls(StandInRobot& robot) const;
   void push_apart(StandInRobot& robot, StandInRobot& other) const;
   void end_frame();

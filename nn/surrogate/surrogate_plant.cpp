@@ -70,7 +70,7 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
   start.pose = {place.x_m, place.y_m, place.attitude.heading};
   start.battery = options.battery;
   set_state(start);
-  check_between_walls(bounds_of(ground_), outline(), {place.x_m, place.y_m});
+  check_between_walls(bounds_of(ground_), outline(), {place.x_m, place.y_m}, 0, 1);
 }
 
 /// Its displacements in the robot's axes at its end. What stands still changes nothing.

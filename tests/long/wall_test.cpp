@@ -237,7 +237,7 @@ std::string refusal(double x, double y, double heading_deg, double size_m = 1.2)
 TEST(WallDrive, AStartInAWallIsRefusedWithTheAllowedPlaces) {
   EXPECT_EQ(refusal(0.4, -0.4, 0.0), "");
   const std::string east = refusal(0.55, 0.0, 0.0);
-  EXPECT_NE(east.find("[vehicle] x = 0.550, y = 0.000 m puts the robot into a wall"),
+  EXPECT_NE(east.find("[vehicle] x = 0.550 m, [vehicle] y = 0.000 m puts the robot into a wall"),
             std::string::npos)
       << east;
   // The range it names is right to the millimetre, and that of the other heading is the same,

@@ -194,7 +194,10 @@ TEST_F(SeveralRobots, WhatCannotBeRunIsRefusedByOneLine) {
   expect_refused("--set robots.count=2 --set map.model=scm --hal surrogate --model '" +
                      std::string(kDataFolder) + "/../../nn/models/v2_products.json'",
                  "networks move 1");
-  expect_refused("--set robots.count=2 --set robots.spacing=0.1", "stand in one another");
+  expect_refused("--set robots.count=2 --set robots.spacing=0.1",
+                 "[robots] count = 2 puts robots 0 and 1 into one another");
+  expect_refused("--set map.edges=walls --set robots.count=2 --set robots.spacing=9",
+                 "[robots] count = 2 puts robot 0");
   expect_refused("--set robots.count=65", "1..64");
   expect_refused("--set robots.count=2 --set robots.placement=list", "places");
   expect_refused(

@@ -187,8 +187,8 @@ Plant::Plant(std::unique_ptr<Terrain> terrain, const Assembly& model, const Plan
   for (const StartPose& start : options.starts) {
     add_robot(model, options);
     check_step();
-    place(*robots_.back(), start);
-    check_apart();
+    place(*robots_.back(), start, options.starts.size());
+    check_apart(options.starts.size());
   }
   for (const auto& robot : robots_) mass_kg_ += robot->vehicle().mass_kg();
   most_energy_j_ = unpaid_energy_j();
@@ -208,7 +208,7 @@ void Plant::check_step() const {
   }
 }
 
-void Plant::place(PlantRobot& robot, const StartPose& start) {
+void Plant::place(PlantRobot& robot, const StartPose& start, size_t starts) {
   Vehicle& vehicle = robot.vehicle();
   const Eigen::Matrix3d rotation = rotation_from(start.attitude);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -222,21 +222,22 @@ void Plant::place(PlantRobot& robot, const StartPose& start) {
                      std::to_string(resting) + " or more (leave z out to set the robot down)");
   }
   vehicle.place(pose);
-  check_between_walls(terrain_->bounds(), vehicle.outline(), {start.x_m, start.y_m});
+  check_between_walls(terrain_->bounds(), vehicle.outline(), {start.x_m, start.y_m},
+                      robots_.size() - 1, starts);
   robot.wrap_around();
   robot.reset_wrap_counts();
 }
 
-void Plant::check_apart() {
+void Plant::check_apart(size_t starts) {
   PlantRobot& last = *robots_.back();
   for (size_t i = 0; i + 1 < robots_.size(); ++i) {
     PlantRobot& other = *robots_[i];
     if (last.vehicle().depth_in(other.vehicle(), to_near_copy(other, last), contact_) == 0.0) {
       continue;
     }
-    throw InputError("[robots] robots " + std::to_string(i) + " and " +
-                     std::to_string(robots_.size() - 1) +
-                     " would stand in one another at the start; put them further apart");
+    throw InputError("[robots] count = " + std::to_string(starts) + " puts robots " +
+                     std::to_string(i) + " and " + std::to_string(robots_.size() - 1) +
+                     " into one another; put them further apart");
   }
 }
 

@@ -108,10 +108,10 @@ class Plant : public Environment {
  private:
   void add_robot(const Assembly& model, const PlantOptions& options);
   void check_step() const;
-  /// Puts a robot where it starts.
-  void place(PlantRobot& robot, const StartPose& start);
+  /// Puts a robot, one of `starts`, where it starts.
+  void place(PlantRobot& robot, const StartPose& start, size_t starts);
   /// Throws InputError when the last robot stands in another one.
-  void check_apart();
+  void check_apart(size_t starts);
   /// Lets the robots come to rest on the ground before the clock starts, as ones that stood there
   /// when they were switched on.
   void settle(const TaskProgress& progress);

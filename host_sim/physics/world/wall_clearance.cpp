@@ -30,7 +30,7 @@ Eigen::Vector2d out_of_walls(const BedBounds& bed, const Eigen::AlignedBox2d& ou
 }
 
 void check_between_walls(const BedBounds& bed, const Eigen::AlignedBox2d& outline,
-                         const Eigen::Vector2d& start) {
+                         const Eigen::Vector2d& start, size_t number, size_t robots) {
   if (bed.edge != BedEdge::kWalled) return;
   const Eigen::Vector2d corner(0.5 * bed.width_m, 0.5 * bed.depth_m);
   if (Eigen::AlignedBox2d(-corner, corner).contains(outline)) return;
@@ -43,9 +43,13 @@ void check_between_walls(const BedBounds& bed, const Eigen::AlignedBox2d& outlin
   const auto range = [&](Eigen::Index axis) {
     return to_millimetre(low[axis]) + ".." + to_millimetre(high[axis]) + " m";
   };
-  throw InputError("[vehicle] x = " + to_millimetre(start.x()) +
-                   ", y = " + to_millimetre(start.y()) +
-                   " m puts the robot into a wall of the bed; it takes " + area(outline.sizes()) +
+  const std::string x = to_millimetre(start.x());
+  const std::string y = to_millimetre(start.y());
+  const std::string placed =
+      robots == 1 ? "[vehicle] x = " + x + " m, [vehicle] y = " + y + " m puts the robot"
+                  : "[robots] count = " + std::to_string(robots) + " puts robot " +
+                        std::to_string(number) + ", at x = " + x + " m, y = " + y + " m,";
+  throw InputError(placed + " into a wall of the bed; it takes " + area(outline.sizes()) +
                    " at this heading: allowed are x " + range(0) + " and y " + range(1));
 }
 

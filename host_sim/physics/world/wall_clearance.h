@@ -11,9 +11,9 @@ namespace screed {
 /// without walls. `outline`: the rectangle round it from above.
 Eigen::Vector2d out_of_walls(const BedBounds& bed, const Eigen::AlignedBox2d& outline);
 
-/// Throws InputError, with the places that are allowed, when a robot that starts at `start` would
-/// stand in a wall of the bed.
+/// Throws InputError, with the places that are allowed, when robot `number` of `robots`, which
+/// starts at `start`, would stand in a wall of the bed.
 void check_between_walls(const BedBounds& bed, const Eigen::AlignedBox2d& outline,
-                         const Eigen::Vector2d& start);
+                         const Eigen::Vector2d& start, size_t number, size_t robots);
 
 }  // namespace screed
