@@ -312,7 +312,7 @@ void write_hdf5(const CampaignPlan& plan, const CampaignCount& count, const Tabl
                 const fs::path& path) {
   PartialFile file(path);
   try {
-    h5::quiet();
+    h5::begin();
     const h5::Handle options(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot create a file");
     h5::check(H5Pset_obj_track_times(options.get(), false), "cannot switch off time stamps");
     const h5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "cannot create a file");

@@ -93,10 +93,15 @@ T read_number(hid_t object, const char* name, hid_t memory_type, H5T_class_t kin
 
 }  // namespace
 
-void quiet() {
+void begin() {
   // After a failed flush (disk full) the library would try again at exit, and say so on stderr.
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  // What a file needs at first, and more. Short of it the library ends with a segmentation fault.
+  constexpr std::size_t kRoom = 8U << 20U;
+  std::vector<char> room;
+  room.reserve(kRoom);
+  *static_cast<volatile char*>(room.data()) = 0;  // or compilers leave it out
 }
 
 Handle::Handle(hid_t id, Close closer, const char* what) : id_(id), close_(closer) {

@@ -18,9 +18,9 @@ class Hdf5Failure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Must run before the first use of a file: keeps the library from printing and from working on at
-/// exit.
-void quiet();
+/// Must run before a file is created or opened: keeps the library from printing and from working on
+/// at exit. Throws std::bad_alloc where the library would find no room for a file.
+void begin();
 
 /// An HDF5 identifier with its closing function. Closing errors are ignored in the destructor; see
 /// close().

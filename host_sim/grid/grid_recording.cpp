@@ -150,7 +150,7 @@ GridRecorder::GridRecorder(const std::filesystem::path& path, const GridRun& run
   if (std::filesystem::exists(path)) {
     throw InputError(path.string() + ": exists already; name another file to record to");
   }
-  h5::quiet();
+  h5::begin();
   f.guarded([&] {
     f.file =
         h5::Handle(H5Fcreate(f.place.partial().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
@@ -196,7 +196,7 @@ void GridRecorder::finish(const GridRun& run) {
 
 GridReplay::GridReplay(const std::filesystem::path& path) : path_(path) {
   const auto refuse = [&](const std::string& why) { throw InputError(path.string() + ": " + why); };
-  h5::quiet();
+  h5::begin();
   try {
     const h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
                           "cannot be read as HDF5");

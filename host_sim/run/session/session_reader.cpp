@@ -54,7 +54,7 @@ h5::Handle open_copy(const std::filesystem::path& path) {
 }
 
 h5::Handle open_file(const std::filesystem::path& path, bool& running) {
-  h5::quiet();
+  h5::begin();
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw Hdf5Failure("no such file");

@@ -78,7 +78,7 @@ class GrowingTable {
 };
 
 h5::Handle create_file(const std::filesystem::path& file) {
-  h5::quiet();
+  h5::begin();
   const h5::Handle options(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot create a file");
   h5::check(H5Pset_obj_track_times(options.get(), false), "cannot switch off time stamps");
   // The format of HDF5 1.8: unlike the default of 1996 its structures carry checksums, and unlike

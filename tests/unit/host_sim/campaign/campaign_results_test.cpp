@@ -67,7 +67,7 @@ TEST(ValueTable, WritesEachColumnInItsType) {
   const ValueTable table =
       table_of({Json::parse(R"({"i":-1,"u":18446744073709551615,"r":0.5,"n":1,"t":"ab","b":true})"),
                 Json::parse(R"({"i":7,"u":1,"r":2,"t":"c","b":false})")});
-  h5::quiet();
+  h5::begin();
   {
     const h5::Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                           H5Fclose, "file");
