@@ -5,6 +5,7 @@
 #include <chrono>
 #include <ctime>
 #include <istream>
+#include <new>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -38,6 +39,11 @@ std::string time_text(std::time_t time) {
 /// In one line; a path in a message need not be UTF-8.
 std::string one_line(const Json& json) {
   return json.dump(-1, Json::BadText::kReplace);
+}
+
+/// Why a task failed, in words.
+std::string reason(const std::exception& error) {
+  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr ? "out of memory" : error.what();
 }
 
 std::string json_number(double value) {
@@ -96,8 +102,8 @@ class Worker {
       stored.result = executor_.execute(task);
     } catch (const std::exception& error) {
       stored.status = ResultStatus::kFailed;
-      stored.result = one_line(Json::object({{"error", error.what()}}));
-      answer.failures.emplace_back(task, error.what());
+      stored.result = one_line(Json::object({{"error", reason(error)}}));
+      answer.failures.emplace_back(task, reason(error));
     }
     stored.provenance = origin_ + ",\"begun\":\"" + time_text(begun) +
                         "\",\"seconds\":" + json_number(seconds_since(begin)) +
@@ -111,7 +117,7 @@ class Worker {
     try {
       answer.trial = executor_.attempt(task);
     } catch (const std::exception& error) {
-      answer.failures.emplace_back(task, error.what());
+      answer.failures.emplace_back(task, reason(error));
     }
   }
 

@@ -127,7 +127,7 @@ def run(screed, name, sets):
 def without_notes(text):
     """What a program says beside its notes, which may come before the one line of an error, or be it."""
     lines = text.strip().splitlines()
-    return "\n".join([line for line in lines if not line.startswith("note: ")] or lines)
+    return "\n".join([line for line in lines if not line.startswith("note: ")] or lines[-1:])
 
 
 def run_short_of_memory(screed, experiment, megabytes):

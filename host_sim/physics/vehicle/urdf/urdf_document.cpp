@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -455,6 +456,8 @@ urdf::ModelInterfaceSharedPtr parse_model(const TiXmlDocument& xml, Diagnostic& 
   urdf::ModelInterfaceSharedPtr model;
   try {
     model = urdf::parseURDF(printer.Str());
+  } catch (const std::bad_alloc&) {
+    throw;  // says nothing about the file
   } catch (const std::exception& error) {
     diagnostic.about_file(std::string("not a valid URDF model: ") + error.what());
   }
