@@ -115,6 +115,10 @@ def check(pictures):
 
 
 def make(pictures, wanted, accept):
+    every = {os.path.basename(it) for it in tracked(*FOLDERS)} | {os.path.basename(it.pattern) for it in pictures}
+    for want in wanted:
+        if not fnmatch.filter(every, want):
+            sys.exit(f"{want}: no picture has this name; names are without folders")
     for picture in pictures:
         names = fnmatch.filter(tracked(*FOLDERS), picture.pattern) or [picture.pattern]
         if not picture.by or not any(fnmatch.fnmatch(os.path.basename(it), want) for it in names for want in wanted):
