@@ -10,6 +10,7 @@
 #include "host_sim/core/csv_file.h"
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/finite_number.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/ground_station/telemetry/schema.h"
 #include "host_sim/run/experiment/experiment_keys.h"

@@ -11,6 +11,7 @@
 #include "firmware/parameters/parameters.h"
 #include "host_sim/campaign/campaign_values.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/finite_number.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 #include "host_sim/search/cma_search.h"

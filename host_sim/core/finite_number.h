@@ -1,9 +1,11 @@
-// Numbers out of texts, all or nothing.
+// Numbers out of texts, all or nothing, and texts of numbers.
 #pragma once
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <type_traits>
 
@@ -22,6 +24,13 @@ std::optional<T> finite_number(std::string_view text) {
     if (!std::isfinite(value)) return std::nullopt;
   }
   return value;
+}
+
+/// The shortest text that reads back as this number.
+inline std::string shortest(double value) {
+  std::array<char, 32> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), result.ptr};
 }
 
 }  // namespace screed

@@ -9,6 +9,7 @@
 
 #include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
+#include "host_sim/core/finite_number.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/soil_validation/check_range.h"
 
@@ -148,7 +149,7 @@ void check(const DigTest& test) {
   check_range("dig", "beds", test.beds, 1, 256);
   check_range("dig", "slope", test.slope_deg, 0, 25);
   if (test.slope_deg > 0.0 && !stays(test.manoeuvre)) {
-    throw InputError("dig: slope = " + std::to_string(test.slope_deg) +
+    throw InputError("dig: slope = " + shortest(test.slope_deg) +
                      ", which only a spin and strokes have");
   }
 }

@@ -9,6 +9,7 @@
 #include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/finite_number.h"
 #include "host_sim/core/rotation.h"
 #include "host_sim/physics/soil/soil_laws.h"
 #include "host_sim/physics/terrain/shear_field.h"
@@ -179,7 +180,7 @@ WheelReaction wheel_limit(const RollingWheel& wheel, const SoilParameters& soil,
       }
       return reaction;
     }
-    throw InputError("wheel: load = " + std::to_string(wheel.load_n) +
+    throw InputError("wheel: load = " + shortest(wheel.load_n) +
                      " N sinks it to its axle in this soil; allowed is less");
   }
   for (int i = 0; i < 40; ++i) {

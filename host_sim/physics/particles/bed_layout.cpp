@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/finite_number.h"
 #include "host_sim/core/random.h"
 #include "host_sim/physics/particles/sphere_grid.h"
 
@@ -183,7 +184,7 @@ std::vector<int> stack_counts(const HeightField& top, const BedExtent& extent, d
   }
   if (sum < 1 || sum > kMaxParticles) {
     throw InputError("[map] particle_radius, [particles] depth: " + std::to_string(sum) +
-                     " particles of radius " + std::to_string(radius_m) +
+                     " particles of radius " + shortest(radius_m) +
                      " m fit below this surface; allowed: 1 to " + std::to_string(kMaxParticles));
   }
   return counts;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/finite_number.h"
 #include "host_sim/core/name_list.h"
 
 namespace screed {
@@ -145,8 +146,8 @@ void SoilOverrides::apply_to(SoilParameters& soil) const {
 void check_soil(const SoilParameters& soil) {
   const auto require = [](const char* name, double value, double min, double max) {
     if (value >= min && value <= max) return;
-    throw InputError(std::string("[soil] ") + name + " = " + std::to_string(value) +
-                     "; allowed is " + std::to_string(min) + " to " + std::to_string(max));
+    throw InputError(std::string("[soil] ") + name + " = " + shortest(value) + "; allowed is " +
+                     shortest(min) + " to " + shortest(max));
   };
   for (const SoilParameterInfo& parameter : kSoilParameters)
     require(parameter.key, soil.*parameter.member, parameter.min, parameter.max);

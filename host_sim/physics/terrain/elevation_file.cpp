@@ -84,7 +84,9 @@ Elevation read_asc(const fs::path& path, std::ifstream& file) {
   double height = 0.0;
   std::optional<double> no_data;
   std::string word;
-  while (file >> word && std::isalpha(static_cast<unsigned char>(word[0])) != 0) {
+  // "nan" may be the first height.
+  while (file >> word && std::isalpha(static_cast<unsigned char>(word[0])) != 0 &&
+         !number_of(word).has_value()) {
     const std::string key = lower_case(word);
     file >> word;
     const std::optional<double> value = number_of(word);

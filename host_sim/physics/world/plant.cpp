@@ -10,6 +10,7 @@
 #include "hal/sample.h"
 #include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/finite_number.h"
 #include "host_sim/physics/world/wall_clearance.h"
 
 namespace screed {
@@ -140,7 +141,7 @@ int steps_in_tick(double physics_step_s) {
   const double steps = kTick_s / physics_step_s;
   const double whole = std::round(steps);
   if (!(whole >= 1.0) || std::abs(steps - whole) > 1e-6) {
-    throw InputError("[physics] step = " + std::to_string(physics_step_s) +
+    throw InputError("[physics] step = " + shortest(physics_step_s) +
                      " s; it must divide the control tick of 0.01 s into whole steps");
   }
   return static_cast<int>(whole);
@@ -203,7 +204,7 @@ void Plant::add_robot(const Assembly& model, const PlantOptions& options) {
 
 void Plant::check_step() const {
   if (robots_.back()->vehicle().chain(kLeft) != nullptr && step_s_ > kLongestChainStep_s + 1e-12) {
-    throw InputError("[physics] step = " + std::to_string(step_s_) +
+    throw InputError("[physics] step = " + shortest(step_s_) +
                      " s; with [vehicle] track_model = chain at most 0.001 s is allowed");
   }
 }

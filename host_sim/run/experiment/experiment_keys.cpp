@@ -2,7 +2,6 @@
 #include "host_sim/run/experiment/experiment_keys.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -15,6 +14,7 @@
 
 #include "firmware/parameters/parameters.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/finite_number.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/ground_station/telemetry/schema.h"
 #include "host_sim/run/experiment/robot_sections.h"
@@ -291,12 +291,6 @@ std::string known_sections() {
 }
 
 }  // namespace
-
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), result.ptr};
-}
 
 const std::vector<ExperimentKey>& experiment_keys() {
   static const std::vector<ExperimentKey> table = make_keys();

@@ -42,8 +42,6 @@ const std::vector<ExperimentKey>& experiment_keys();
 const ExperimentKey& find_experiment_key(const std::string& section, const std::string& name,
                                          const std::string& where);
 
-/// The shortest text that reads back as this number.
-std::string shortest(double value);
 /// Whether all of the text is a number.
 template <class Number>
 bool parse_number(const std::string& text, Number& value) {

@@ -8,6 +8,7 @@
 
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/finite_number.h"
 #include "host_sim/core/random.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 #include "host_sim/run/experiment/robot_sections.h"

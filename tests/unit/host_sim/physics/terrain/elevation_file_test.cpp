@@ -78,8 +78,11 @@ TEST(ElevationFile, WrongTextIsNamedWithItsPlace) {
   EXPECT_EQ(error(head + "1 2\n3 4\n"), "no error");
   EXPECT_EQ(error(head + "1 2\n3"), "row 2, column 2: the file ends too early");
   EXPECT_EQ(error(head + "1 2\n3,5 4\n"), "row 2, column 1: '3,5' is no height");
-  EXPECT_EQ(error(head + "1 nan\n3 4\n"),
-            "1 of 4 cells have no height; fill them first (gdal_fillnodata.py does)");
+  EXPECT_EQ(error(head + "3,5 2\n3 4\n"), "row 1, column 1: '3,5' is no height");
+  for (const char* heights : {"1 nan\n3 4\n", "nan 2\n3 4\n"}) {
+    EXPECT_EQ(error(head + heights),
+              "1 of 4 cells have no height; fill them first (gdal_fillnodata.py does)");
+  }
   EXPECT_EQ(error("ncols 2\nnrows two\n"), "nrows is 'two', a number is needed");
   EXPECT_EQ(error("1 2\n3 4\n"),
             "is no Esri ASCII grid: ncols, nrows and cellsize, each > 0, come first");
