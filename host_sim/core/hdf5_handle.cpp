@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "host_sim/core/memory_room.h"
+
 namespace screed::h5 {
 namespace {
 
@@ -98,10 +100,7 @@ void begin() {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   // What a file needs at first, and more. Short of it the library ends with a segmentation fault.
-  constexpr std::size_t kRoom = 8U << 20U;
-  std::vector<char> room;
-  room.reserve(kRoom);
-  *static_cast<volatile char*>(room.data()) = 0;  // or compilers leave it out
+  check_memory(8U << 20U);
 }
 
 Handle::Handle(hid_t id, Close closer, const char* what) : id_(id), close_(closer) {

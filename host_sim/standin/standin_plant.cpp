@@ -261,9 +261,7 @@ void StandInPlant::check_apart(const StartPose& start, size_t starts) const {
                       starts);
   for (std::size_t i = 0; i + 1 < robots_.size(); ++i) {
     if (!overlap(last, *robots_[i], terrain()).has_value()) continue;
-    throw InputError("[robots] count = " + std::to_string(starts) + " puts robots " +
-                     std::to_string(i) + " and " + std::to_string(robots_.size() - 1) +
-                     " into one another; put them further apart");
+    refuse_overlap(i, robots_.size() - 1, starts);
   }
 }
 

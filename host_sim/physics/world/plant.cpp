@@ -236,9 +236,7 @@ void Plant::check_apart(size_t starts) {
     if (last.vehicle().depth_in(other.vehicle(), to_near_copy(other, last), contact_) == 0.0) {
       continue;
     }
-    throw InputError("[robots] count = " + std::to_string(starts) + " puts robots " +
-                     std::to_string(i) + " and " + std::to_string(robots_.size() - 1) +
-                     " into one another; put them further apart");
+    refuse_overlap(i, robots_.size() - 1, starts);
   }
 }
 

@@ -53,4 +53,10 @@ void check_between_walls(const BedBounds& bed, const Eigen::AlignedBox2d& outlin
                    " at this heading: allowed are x " + range(0) + " and y " + range(1));
 }
 
+void refuse_overlap(size_t one, size_t other, size_t robots) {
+  throw InputError("[robots] count = " + std::to_string(robots) + " puts robots " +
+                   std::to_string(one) + " and " + std::to_string(other) +
+                   " into one another; put them further apart");
+}
+
 }  // namespace screed

@@ -1,4 +1,4 @@
-// Where a robot may stand between the walls of a bed.
+// Where robots may stand: between the walls of a bed, and not in one another.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,5 +15,8 @@ Eigen::Vector2d out_of_walls(const BedBounds& bed, const Eigen::AlignedBox2d& ou
 /// starts at `start`, would stand in a wall of the bed.
 void check_between_walls(const BedBounds& bed, const Eigen::AlignedBox2d& outline,
                          const Eigen::Vector2d& start, size_t number, size_t robots);
+
+/// Throws InputError: robots `one` and `other` of `robots` start in one another.
+[[noreturn]] void refuse_overlap(size_t one, size_t other, size_t robots);
 
 }  // namespace screed

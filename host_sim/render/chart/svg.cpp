@@ -17,6 +17,7 @@
 
 #include "host_sim/core/base64.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/memory_room.h"
 #include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/render/picture/color_map.h"
 
@@ -220,9 +221,7 @@ struct Release {
 void check_room(const std::filesystem::path& path) {
   constexpr std::size_t kRoom = 192U << 20U;  // of addresses: an arena for each thread
   try {
-    std::vector<char> room;
-    room.reserve(kRoom);
-    *static_cast<volatile char*>(room.data()) = 0;  // or compilers leave it out
+    check_memory(kRoom);
     std::thread([] {}).join();
   } catch (const std::exception&) {
     throw RunError(path.string() + ": the picture cannot be drawn: out of memory");

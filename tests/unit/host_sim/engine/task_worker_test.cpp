@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -15,13 +16,14 @@
 namespace screed {
 namespace {
 
-/// Task i yields i squared; task 3 fails.
+/// Task i yields i squared; task 3 fails, task 6 finds no memory.
 class Squares : public TaskExecutor {
  public:
   size_t count() const override { return 10; }
   std::string id(size_t task) const override { return "square-" + std::to_string(task); }
   std::string execute(size_t task) override {
     if (task == 3) throw std::runtime_error("three\nlines \xff of trouble");
+    if (task == 6) throw std::bad_alloc();
     return std::to_string(task * task);
   }
 };
@@ -59,6 +61,15 @@ TEST(TaskWorker, WhatIsNoAnswerStops) {
     EXPECT_EQ(read.kind, WorkerAnswer::Kind::kStop) << text;
     EXPECT_FALSE(read.message.empty()) << text;
   }
+}
+
+TEST(TaskWorker, ATaskThatFindsNoMemorySaysSoInWords) {
+  const TempFolder folder;
+  Squares squares;
+  const auto answers = serve(squares, folder.path(), execute_request({6}, 1));
+  ASSERT_EQ(answers.size(), 1U);
+  ASSERT_EQ(answers[0].failures.size(), 1U);
+  EXPECT_EQ(answers[0].failures[0].second, "out of memory");
 }
 
 TEST(TaskWorker, StoresEachTaskOfARequest) {

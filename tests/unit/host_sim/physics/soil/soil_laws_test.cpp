@@ -40,7 +40,7 @@ TEST(SoilParameters, EachIsAcceptedUpToItsEndsAndRefusedBeyond) {
       soil.*parameter.member = bad;
       const std::string message = refusal(soil);
       EXPECT_EQ(message.rfind(std::string("[soil] ") + parameter.key + " = ", 0), 0U) << message;
-      EXPECT_NE(message.find(" to " + shortest(parameter.max)), std::string::npos) << message;
+      EXPECT_TRUE(message.ends_with(" to " + shortest(parameter.max))) << message;
     }
   }
 }
