@@ -263,7 +263,7 @@ std::vector<CampaignFactor> read_samples(const std::vector<IniEntry>& entries, c
   const std::string whole = line_place(path, entries.front().line) + ": [" + section + "]";
   if (sampling.count == 0) throw InputError(whole + " has no count, the number of samples");
   if (sampled.empty())
-    throw InputError(whole + " has no range, such as soil.drag_depth = 0.001..0.004");
+    throw InputError(whole + " has no range, such as soil.slip_layer = 0.001..0.004");
   const auto count = static_cast<size_t>(sampling.count);
   const auto shares = section == "random"
                           ? random_sample(count, sampled.size(), sampling.seed)

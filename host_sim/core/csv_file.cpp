@@ -2,11 +2,13 @@
 #include "host_sim/core/csv_file.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/finite_number.h"
 
 namespace screed {
 namespace {
@@ -78,6 +80,35 @@ bool CsvReader::next(CsvLine& line) {
   }
   if (file_.bad()) throw InputError(path_ + ": cannot be read");
   return false;
+}
+
+const std::string& CsvRow::text(const char* name) const {
+  static const std::string kNone;
+  const auto at =
+      static_cast<size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
+  return at < names_.size() && at < line_.cells.size() ? line_.cells[at] : kNone;
+}
+
+double CsvRow::number(const char* name, double low, double high) const {
+  const std::string& cell = text(name);
+  if (cell.empty()) refuse(std::string("no ") + name);
+  const std::optional<double> value = finite_number<double>(cell);
+  if (!value.has_value() || *value < low || *value > high) {
+    char what[200];
+    std::snprintf(what, sizeof what, "%s is '%s', a number from %g to %g is needed", name,
+                  cell.c_str(), low, high);
+    refuse(what);
+  }
+  return *value;
+}
+
+std::optional<double> CsvRow::number_if_any(const char* name, double low, double high) const {
+  if (!has(name)) return std::nullopt;
+  return number(name, low, high);
+}
+
+void CsvRow::refuse(const std::string& what) const {
+  throw InputError(file_ + ":" + std::to_string(line_.line) + ": " + what);
 }
 
 std::vector<CsvLine> read_csv_file(const std::filesystem::path& path) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,28 @@ class CsvReader {
   std::ifstream file_;
   int number_ = 0;
   std::string text_;
+};
+
+/// A line by the names of its columns.
+class CsvRow {
+ public:
+  /// All of which must live as long.
+  CsvRow(const std::string& file, const std::vector<std::string>& names, const CsvLine& line)
+      : file_(file), names_(names), line_(line) {}
+
+  /// Empty where there is no such column or nothing in it.
+  const std::string& text(const char* name) const;
+  bool has(const char* name) const { return !text(name).empty(); }
+  /// Throws InputError, naming file and line, for what is no number from low to high.
+  double number(const char* name, double low, double high) const;
+  /// The same; nothing where nothing stands.
+  std::optional<double> number_if_any(const char* name, double low, double high) const;
+  [[noreturn]] void refuse(const std::string& what) const;
+
+ private:
+  const std::string& file_;
+  const std::vector<std::string>& names_;
+  const CsvLine& line_;
 };
 
 /// All lines of a file.

@@ -14,12 +14,18 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
 #include "host_sim/soil_validation/plate_press.h"
+#include "host_sim/soil_validation/wheel_testbed.h"
 
 namespace screed {
 namespace {
 
 constexpr double kForceShareOfLoad = 0.03;
 constexpr double kShareOfValue = 0.10;
+// Of a test whose slip changes: cells and steps as coarse as leave its sinkage where it is.
+constexpr double kCell_m = 0.01;
+constexpr double kStep_s = 0.002;
+constexpr double kMovingMass_kg = 2.0;
+constexpr double kMinError_m = 6e-4;  // of what a wheel sinks in addition
 constexpr double kDifference =
     1e-5;  // of a free variable, for derivatives: above the limit's noise
 // Of the distance between the bounds: nearer than that, a parameter lies at its bound.
@@ -94,6 +100,8 @@ class Residuals {
         count_ += measured->has_value() ? 1 : 0;
       }
     }
+    for (const MeasuredTransient& transient : problem.measured.transients)
+      count_ += static_cast<int>(transient.places.size());
     count_ += static_cast<int>(problem.measured.plates.size());
   }
 
@@ -124,6 +132,15 @@ class Residuals {
       add(row.torque_nm, r.torque_nm,
           error_of_force(row.torque_nm.value_or(0), load * row.wheel.radius_m));
       add(row.sinkage_m, r.sinkage_m, kShareOfValue * row.sinkage_m.value_or(0));
+    }
+    for (const MeasuredTransient& transient : problem_.measured.transients) {
+      const std::vector<double> extra = predicted_transient(transient, problem_.soil, problem_.rim);
+      for (size_t i = 0; i < extra.size(); ++i) {
+        const MeasuredTransient::Place& place = transient.places[i];
+        residuals[next++] = (extra[i] - place.extra_sinkage_m) /
+                            portable::hypot(kShareOfValue * place.extra_sinkage_m,
+                                            std::max(place.error_m, kMinError_m));
+      }
     }
     for (const MeasuredPlate& row : problem_.measured.plates) {
       PlateTest plate;
@@ -297,6 +314,20 @@ WheelReaction predicted_wheel(const RollingWheel& wheel, const SoilParameters& s
   return wheel_limit(rolling, soil, NormalStress::kRadial, AtAxle::kTakeForces);
 }
 
+std::vector<double> predicted_transient(const MeasuredTransient& transient,
+                                        const SoilParameters& soil, const RimSurface& rim) {
+  constexpr double kInterval_s = 0.02;
+  WheelTest test;
+  test.wheel = transient.wheel;
+  test.wheel.friction = rim.friction;
+  test.wheel.adhesion_pa = rim.adhesion_pa;
+  test.soil = soil;
+  test.mass_kg = kMovingMass_kg;
+  test.cell_m = kCell_m;
+  test.step_s = kStep_s;
+  return transient.extra_sinkage_m(run_wheel(test, transient.schedule(), kInterval_s).samples);
+}
+
 SoilFit fit_soil(const SoilFitProblem& given, const std::function<void(int)>& progress) {
   SoilFitProblem problem = given;
   check_soil(problem.soil);
@@ -307,7 +338,9 @@ SoilFit fit_soil(const SoilFitProblem& given, const std::function<void(int)>& pr
                      std::to_string(residuals.inputs()) + " parameters; more are needed");
   }
   const std::vector<Minimum> minima = minima_from_all_starts(
-      residuals, free, problem.measured.wheels.empty() ? kPlateStarts : kWheelStarts);
+      residuals, free,
+      problem.measured.wheels.empty() && problem.measured.transients.empty() ? kPlateStarts
+                                                                             : kWheelStarts);
   const Eigen::VectorXd& variables = minima.front().variables;
 
   SoilFit fit;

@@ -1,5 +1,5 @@
 // Fits a soil's parameters to measurements: least squares over the limits of wheels
-// (wheel_testbed.h) and Bekker's law for plates, with the uncertainty of each parameter.
+// (wheel_limit.h) and Bekker's law for plates, with the uncertainty of each parameter.
 #pragma once
 
 #include <functional>
@@ -51,15 +51,20 @@ struct SoilFit {
 
 /// Errors that measurements are taken to have: of a force the greater part of 3 % of the load and
 /// 10 % of its value (their squares add), of a sinkage or a plate's pressure 10 %, of a torque 3 %
-/// of load times radius and 10 %. The fit begins at the problem's soil and at the best of many
-/// places in the ranges of the free parameters (of 300 eleven, with wheels of 40 three); the best
-/// end is the answer. Throws InputError for an unknown key, one twice, and fewer measurements than
-/// parameters. `progress` is told how many evaluations were made.
+/// of load times radius and 10 %, of
+/// what slip sinks a wheel in addition 10 %, 0.3 mm and what the row states. The fit begins at the
+/// problem's soil and at the best of many places in the ranges of the free parameters (of 300
+/// eleven, with wheels of 40 three); the best end is the answer. Throws InputError for an unknown
+/// key, one twice, and fewer measurements than parameters. `progress` is told how many evaluations
+/// were made.
 SoilFit fit_soil(const SoilFitProblem& problem, const std::function<void(int)>& progress = {});
 
 /// A wheel of the measurements on this soil, with this rim: the limit, and where the load sinks it
 /// to its axle the forces there.
 WheelReaction predicted_wheel(const RollingWheel& wheel, const SoilParameters& soil,
                               const RimSurface& rim);
+/// What a wheel of the measurements sinks in addition at its places, m.
+std::vector<double> predicted_transient(const MeasuredTransient& transient,
+                                        const SoilParameters& soil, const RimSurface& rim);
 
 }  // namespace screed

@@ -2,9 +2,7 @@
 #include "host_sim/soil_validation/soil_measurements.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <numeric>
 #include <tuple>
@@ -16,51 +14,7 @@
 namespace screed {
 namespace {
 
-/// A row by the names of its columns.
-class Row {
- public:
-  Row(const std::string& file, int line, const std::vector<std::string>& names,
-      const std::vector<std::string>& fields)
-      : file_(file), line_(line), names_(names), fields_(fields) {}
-
-  bool has(const char* name) const { return !text(name).empty(); }
-  const std::string& text(const char* name) const {
-    static const std::string kNone;
-    const auto at =
-        static_cast<size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
-    return at < names_.size() && at < fields_.size() ? fields_[at] : kNone;
-  }
-  double number(const char* name, double low, double high) const {
-    const std::string& field = text(name);
-    if (field.empty()) fail(std::string("no ") + name);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    const bool read = error == std::errc() && end == field.data() + field.size();
-    if (!read || !(value >= low && value <= high)) {
-      char text[200];
-      std::snprintf(text, sizeof text, "%s is '%s', a number from %g to %g is needed", name,
-                    field.c_str(), low, high);
-      fail(text);
-    }
-    return value;
-  }
-  std::optional<double> measured(const char* name, double low, double high) const {
-    if (!has(name)) return std::nullopt;
-    return number(name, low, high);
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(file_ + ":" + std::to_string(line_) + ": " + what);
-  }
-
-  const std::string& file_;
-  int line_;
-  const std::vector<std::string>& names_;
-  const std::vector<std::string>& fields_;
-};
-
-MeasuredWheel wheel_of(const Row& row) {
+MeasuredWheel wheel_of(const CsvRow& row) {
   constexpr double kForce_n = 1e6;
   MeasuredWheel wheel;
   wheel.name = row.text("case");
@@ -68,25 +22,52 @@ MeasuredWheel wheel_of(const Row& row) {
   wheel.wheel.width_m = row.number("wheel_width_m", 1e-3, 10.0);
   wheel.wheel.load_n = row.number("load_n", 1e-3, kForce_n);
   wheel.wheel.slip = row.number("slip", -1.0, 0.99);
-  const double slip_angle_deg = row.measured("slip_angle_deg", -80.0, 80.0).value_or(0.0);
+  const double slip_angle_deg = row.number_if_any("slip_angle_deg", -80.0, 80.0).value_or(0.0);
   wheel.wheel.slip_angle_rad = slip_angle_deg * std::numbers::pi / 180.0;
-  wheel.drawbar_pull_n = row.measured("drawbar_pull_n", -kForce_n, kForce_n);
-  wheel.side_force_n = row.measured("side_force_n", -kForce_n, kForce_n);
-  wheel.torque_nm = row.measured("torque_nm", -kForce_n, kForce_n);
-  wheel.sinkage_m = row.measured("sinkage_m", 1e-6, 10.0);
-  wheel.drawbar_pull_error_n = row.measured("drawbar_pull_error_n", 0.0, kForce_n);
-  wheel.side_force_error_n = row.measured("side_force_error_n", 0.0, kForce_n);
-  wheel.sinkage_error_m = row.measured("sinkage_error_m", 0.0, 10.0);
+  wheel.drawbar_pull_n = row.number_if_any("drawbar_pull_n", -kForce_n, kForce_n);
+  wheel.side_force_n = row.number_if_any("side_force_n", -kForce_n, kForce_n);
+  wheel.torque_nm = row.number_if_any("torque_nm", -kForce_n, kForce_n);
+  wheel.sinkage_m = row.number_if_any("sinkage_m", 1e-6, 10.0);
+  wheel.drawbar_pull_error_n = row.number_if_any("drawbar_pull_error_n", 0.0, kForce_n);
+  wheel.side_force_error_n = row.number_if_any("side_force_error_n", 0.0, kForce_n);
+  wheel.sinkage_error_m = row.number_if_any("sinkage_error_m", 0.0, 10.0);
   return wheel;
 }
 
-MeasuredPlate plate_of(const Row& row) {
+/// A row of a transient: to the last one, or a new one.
+void add_transient(const CsvRow& row, std::vector<MeasuredTransient>& transients) {
+  constexpr double kSpeed = 10.0;
+  MeasuredTransient one;
+  one.name = row.text("case");
+  one.wheel.radius_m = row.number("wheel_radius_m", 1e-3, 10.0);
+  one.wheel.width_m = row.number("wheel_width_m", 1e-3, 10.0);
+  one.wheel.load_n = row.number("load_n", 1e-3, 1e6);
+  const double slip_angle_deg = row.number_if_any("slip_angle_deg", -180.0, 180.0).value_or(0.0);
+  one.wheel.slip_angle_rad = slip_angle_deg * std::numbers::pi / 180.0;
+  one.travel_m_per_s = row.number("travel_m_s", -kSpeed, kSpeed);
+  one.rim_m_per_s = row.number("rim_m_s", -kSpeed, kSpeed);
+  one.time_constant_s = row.number("rim_time_constant_s", 1e-3, 10.0);
+  if (one.rim_m_per_s == one.travel_m_per_s * portable::cos(one.wheel.slip_angle_rad))
+    row.refuse("rim_m_s is that of the travel ahead; a transient needs another one");
+  const MeasuredTransient::Place place = {
+      row.number("slip_path_m", -1e3, 1e3), row.number("extra_sinkage_m", -10.0, 10.0),
+      row.number_if_any("extra_sinkage_error_m", 0.0, 10.0).value_or(0.0)};
+  if (transients.empty() || transients.back().name != one.name) {
+    transients.push_back(one);
+  } else if (!(std::abs(place.slip_path_m) >
+               std::abs(transients.back().places.back().slip_path_m))) {
+    row.refuse("slip_path_m must grow from row to row of a case");
+  }
+  transients.back().places.push_back(place);
+}
+
+MeasuredPlate plate_of(const CsvRow& row) {
   const double width = row.number("plate_width_m", 1e-3, 10.0);
   const double length = row.number("plate_length_m", 1e-3, 10.0);
   return {row.text("case"),
           std::min(width, length),
           std::max(width, length),
-          row.measured("round", 0.0, 1.0).value_or(0.0) != 0.0,
+          row.number_if_any("round", 0.0, 1.0).value_or(0.0) != 0.0,
           row.number("depth_m", 1e-6, 10.0),
           row.number("pressure_pa", 1e-3, 1e9)};
 }
@@ -102,24 +83,55 @@ SoilMeasurements read_soil_measurements(const std::string& file, const std::stri
     return std::find(names.begin(), names.end(), name) != names.end();
   };
   const bool wheels = has("wheel_radius_m");
+  const bool transients = has("slip_path_m");
   if (!wheels && !has("plate_width_m")) {
     throw InputError(file + ":" + std::to_string(line.line) +
                      ": neither a column wheel_radius_m (wheels) nor plate_width_m (plates)");
   }
   SoilMeasurements all;
   while (reader.next(line)) {
-    const Row row(file, line.line, names, line.cells);
+    const CsvRow row(file, names, line);
     if (!row.text("case").starts_with(prefix)) continue;
-    if (wheels) {
+    if (transients) {
+      add_transient(row, all.transients);
+    } else if (wheels) {
       all.wheels.push_back(wheel_of(row));
     } else {
       all.plates.push_back(plate_of(row));
     }
   }
-  if (all.wheels.empty() && all.plates.empty()) {
+  if (all.wheels.empty() && all.transients.empty() && all.plates.empty()) {
     throw InputError(file + ": no case begins with '" + prefix + "'");
   }
   return all;
+}
+
+WheelSchedule MeasuredTransient::schedule() const {
+  const double ahead = travel_m_per_s * portable::cos(wheel.slip_angle_rad);
+  // Half a dozen time constants, and the way to the last place.
+  const double duration =
+      6.0 * time_constant_s + std::abs(places.back().slip_path_m) / std::abs(rim_m_per_s - ahead);
+  return step_of_slip(travel_m_per_s, wheel.slip_angle_rad, rim_m_per_s, time_constant_s, duration);
+}
+
+std::vector<double> MeasuredTransient::extra_sinkage_m(
+    const std::vector<WheelSample>& samples) const {
+  std::vector<double> extra;
+  auto after = samples.begin();
+  for (const Place& place : places) {
+    while (after + 1 != samples.end() && std::abs(after->slip_path_m) < std::abs(place.slip_path_m))
+      ++after;
+    double sinkage = after->sinkage_m;
+    if (after != samples.begin()) {
+      const WheelSample& before = *(after - 1);
+      const double share = std::clamp(
+          (place.slip_path_m - before.slip_path_m) / (after->slip_path_m - before.slip_path_m), 0.0,
+          1.0);
+      sinkage = before.sinkage_m + share * (after->sinkage_m - before.sinkage_m);
+    }
+    extra.push_back(sinkage - samples.front().sinkage_m);
+  }
+  return extra;
 }
 
 // ---- trials of the same test: means and standard deviations

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/soil_validation/wheel_testbed.h"
+#include "host_sim/soil_validation/wheel_limit.h"
+#include "host_sim/soil_validation/wheel_schedule.h"
 
 namespace screed {
 
@@ -38,12 +39,38 @@ struct MeasuredPlate {
   double pressure_pa;
 };
 
+/// A wheel that rolled without slip until its rim went over to another speed, and how much deeper
+/// it was then than it would have been without. A row a place; rows of one case follow each other.
+/// Columns: case, wheel_radius_m, wheel_width_m, load_n, travel_m_s, rim_m_s, rim_time_constant_s
+/// (0.001..10), slip_angle_deg (0 without), slip_path_m (of the rim, less the travel ahead),
+/// extra_sinkage_m, extra_sinkage_error_m (a standard error; 0 without).
+struct MeasuredTransient {
+  struct Place {
+    double slip_path_m;
+    double extra_sinkage_m;
+    double error_m;
+  };
+  std::string name;
+  RollingWheel wheel;  ///< its slip does not count
+  double travel_m_per_s;
+  double rim_m_per_s;
+  double time_constant_s;
+  std::vector<Place> places;  ///< by rising slip path
+
+  /// Until behind the last place.
+  WheelSchedule schedule() const;
+  /// What samples of that schedule give at the places, m.
+  std::vector<double> extra_sinkage_m(const std::vector<WheelSample>& samples) const;
+};
+
 struct SoilMeasurements {
   std::vector<MeasuredWheel> wheels;
+  std::vector<MeasuredTransient> transients;
   std::vector<MeasuredPlate> plates;
 };
 
-/// Rows whose case begins with `prefix`; wheels when there is a column wheel_radius_m, else plates.
+/// Rows whose case begins with `prefix`: transients when there is a column slip_path_m, wheels when
+/// there is one wheel_radius_m, else plates.
 /// Throws InputError with file and line when the file cannot be read, a column is missing, a number
 /// is none or out of range, and when no row is left.
 SoilMeasurements read_soil_measurements(const std::string& file, const std::string& prefix = "");

@@ -47,6 +47,7 @@ BeltGround::BeltGround(const HeightField& surface, const SoilParameters& soil,
       tracks_(tracks),
       fit_(fit),
       flow_(surface, soil.repose_deg, Compaction{soil.compaction, soil.compaction_depth_m}),
+      power_(soil.exponent),
       cell_area_(surface.spacing_m() * surface.spacing_m()),
       bekker_(bekker_modulus(soil, tracks.width_m)),
       unloading_pa_per_m_(std::min(
@@ -55,7 +56,6 @@ BeltGround::BeltGround(const HeightField& surface, const SoilParameters& soil,
       tan_repose_(portable::tan(soil.repose_deg * std::numbers::pi / 180.0)),
       stances_(robots) {
   check_soil(soil);
-  powers_ = power_tables(soil.exponent, kExponentStep, soil.slip_sinkage);
 }
 
 std::size_t BeltGround::patch_of(double x) const {
@@ -101,6 +101,7 @@ void BeltGround::find_cells(const BeltStride& stride, const TrackPlane& about) {
                      0.5 + (0.5 * tracks_.width_m - std::abs(cell.y - middle(side))) / across_edge);
         if (cell.share <= kMinShare) continue;
         cell.at = {0, ix, iy};
+        cell.flow = stride.shear.at(side).patch_flow_m.at(patch_of(cell.x));
         if (!flow_.grid().find(cell.at)) continue;
         const double r = tracks_.radius_m;
         if (beyond > 0.0) cell.over = r - std::sqrt(r * r - beyond * beyond);
@@ -116,26 +117,6 @@ void BeltGround::find_cells(const BeltStride& stride, const TrackPlane& about) {
   sides_[2] = cells_.size();
 }
 
-/// Another exponent of Bekker's law where the belt slips. Soil feels slip while it is sheared, so a
-/// belt averages it over its length.
-void BeltGround::find_bearing(const BeltStride& stride, Stance& stance) {
-  const double length = tracks_.half_length_m + tracks_.radius_m;
-  for (const std::size_t side : {0U, 1U}) {
-    const BeltShear& shear = stride.shear.at(side);
-    if (shear.moved_m > 0.0) {
-      stance.slip.at(side) += std::min(1.0, shear.moved_m / length) *
-                              (shear.slid_m / shear.moved_m - stance.slip.at(side));
-    }
-    const double more = soil_.slip_sinkage * std::clamp(stance.slip.at(side), 0.0, 1.0);
-    const PowerTable* const power = &(*powers_)[std::min(
-        powers_->size() - 1, static_cast<std::size_t>(std::lround(more / kExponentStep)))];
-    for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
-      Cell& cell = cells_[i];
-      cell.power = power;
-    }
-  }
-}
-
 BeltGround::Reaction BeltGround::react(const TrackPlane& plane) {
   Reaction sum;
   for (Cell& cell : cells_) {
@@ -143,14 +124,26 @@ BeltGround::Reaction BeltGround::react(const TrackPlane& plane) {
         cell.level - cell.over - (plane.height_m + plane.forward * cell.x + plane.left * cell.y);
     cell.pressure = 0.0;
     if (cell.depth <= 0.0 || cell.depth <= cell.prior) continue;
-    const double virgin = bekker_ * cell.power->power(cell.depth);
-    const double elastic = unloading_pa_per_m_ * (cell.depth - cell.prior);
+    const double capacity = bekker_ * power_.power(cell.depth);
+    double virgin = capacity;
+    double hardening = power_.exponent() * capacity / cell.depth;
+    const double down = cell.depth - cell.prior;  // in this stride
+    if (soil_.slip_bearing < 1.0 && cell.flow > 0.0) {
+      // bearing_under_slip() of what is plastic of it: down - pressure / E.
+      const double per_flow = (1.0 - soil_.slip_bearing) * capacity / cell.flow;
+      const double per_elastic = 1.0 / (1.0 + per_flow / unloading_pa_per_m_);
+      const double weak = per_elastic * (soil_.slip_bearing * capacity + per_flow * down);
+      if (weak < capacity) {
+        virgin = weak;
+        hardening = power_.exponent() * weak / cell.depth + per_elastic * per_flow;
+      }
+    }
+    const double elastic = unloading_pa_per_m_ * down;
     const bool yields = virgin < elastic;
     cell.pressure = yields ? virgin : elastic;
     const double area = cell_area_ * cell.share;
     const double force = area * cell.pressure;
-    const double slope =
-        area * (yields ? cell.power->exponent() * virgin / cell.depth : unloading_pa_per_m_);
+    const double slope = area * (yields ? hardening : unloading_pa_per_m_);
     sum.force += force;
     sum.moment_x += force * cell.x;
     sum.moment_y += force * cell.y;
@@ -216,6 +209,7 @@ void BeltGround::compact(const BeltStride& stride, std::size_t side) {
   const double ahead =
       (stride.motion.forward_m - stride.motion.turn_rad * middle(side)) / kStride_s;
   const double left = stride.motion.sideways_m / kStride_s;
+  pressed_ = thrown_ = 0.0;
   flow_.begin_footprint({{ahead * c - left * s, ahead * s + left * c}, {c, s}, tracks_.width_m});
   for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
     const Cell& cell = cells_[i];
@@ -230,14 +224,17 @@ void BeltGround::compact(const BeltStride& stride, std::size_t side) {
     const double now = cell.depth - cell.pressure / unloading_pa_per_m_;
     const auto units =
         static_cast<Height>(std::lround(cell.share * (now - cell.prior) / kHeightUnit_m));
-    if (units > 0) flow_.sink(cell.at, units);
+    if (units <= 0) continue;
+    flow_.sink(cell.at, units);
+    pressed_ += units;
+    thrown_ += units * std::max(0.0, 1.0 - (now - cell.prior) / std::max(cell.flow, 1e-9));
   }
 }
 
 /// As SoilBed::dig_below(), of a belt in a stride.
 void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::size_t side) {
   const BeltShear& shear = stride.shear.at(side);
-  if (soil_.drag_depth_m <= 0.0 || shear.length_m <= 0.0) return;
+  if (shear.length_m <= 0.0 || (soil_.slip_layer_m <= 0.0 && soil_.slip_bearing >= 1.0)) return;
   double cells = 0.0;
   double along = 0.0;
   double square = 0.0;
@@ -262,15 +259,16 @@ void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::siz
       0.5 * std::sqrt(12.0 * std::max(0.0, square / cells - along * along) + cell_area_);
   patch.half_width = 0.5 * tracks_.width_m;
   patch.band = tracks_.width_m;
-  const double layer = soil_.drag_depth_m / kHeightUnit_m;
+  const double layer = soil_.slip_layer_m / kHeightUnit_m;
   dig_remainder_ += fit_.digging * layer * shear.length_m * tracks_.width_m / cell_area_;
   const Eigen::Vector2d fall = -(plane.forward * forward + plane.left * left);
   const Eigen::Vector2d downhill = shear.length_m / std::max(tan_repose_, fall.norm()) * fall;
   const Eigen::Vector2d dragged = shear.forward_m * forward + shear.left_m * left;
-  patch.carried = layer * cells * (fit_.downhill * downhill - soil_.drag_share * dragged);
+  patch.carried = layer * cells * (fit_.downhill * downhill - soil_.slip_carry * dragged);
+  patch.carried -= soil_.slip_carry * 2.0 * patch.half_length * thrown_ / shear.length_m * dragged;
   const auto units = static_cast<std::int64_t>(dig_remainder_);
   dig_remainder_ -= static_cast<double>(units);
-  flow_.dig(patch, units);
+  flow_.dig(patch, units, pressed_ > 0.0 ? thrown_ / pressed_ : 0.0);
 }
 
 void BeltGround::keep_support(const TrackPlane& plane, Stance& stance) const {
@@ -325,7 +323,6 @@ void BeltGround::press(std::size_t robot, const BeltStride& stride) {
     from.height_m = -std::numeric_limits<double>::max();
     for (const Cell& cell : cells_) from.height_m = std::max(from.height_m, cell.level - cell.over);
   }
-  find_bearing(stride, stance);
   const TrackPlane plane = find_equilibrium(from, stride.acceleration_m_per_s2,
                                             stance.placed ? kMaxIterations : kPlacingIterations);
   react(plane);

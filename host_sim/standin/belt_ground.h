@@ -6,7 +6,7 @@
 //   a robot stands where Bekker's pressures below its belts support its weight;
 //   cells below them are compacted to the belts' depth, what leaves them is laid down beside and
 //   ahead (MaterialFlow::deposit);
-//   slip digs: volume = drag_depth slip width, carried down the slope and with the belt
+//   slip digs: volume = slip_layer slip width, carried down the slope and with the belt
 //   (soil_reaction.cpp, Digging);
 //   slopes above the angle of repose slide.
 // Heights are integers and soil moves in whole units: the volume stays the same to the last bit. A
@@ -84,7 +84,6 @@ class BeltGround {
     bool placed = false;
     TrackPlane plane;
     BeltSupport support;
-    std::array<double, 2> slip{};  // that the soil below each belt has felt
     std::array<double, 2> sinkage_m{};
   };
   struct Cell {  // of the ground below a belt
@@ -96,7 +95,7 @@ class BeltGround {
     double level;  // from which sinkage counts, m
     double prior;  // sinkage of the part below the belt, m
     SinkageDivision division;
-    const PowerTable* power;
+    double flow;      // below the belt in this stride, m (slip_flow())
     double depth;     // of the belt below the level, m
     double pressure;  // Pa
   };
@@ -112,7 +111,6 @@ class BeltGround {
   }
   std::size_t patch_of(double x) const;
   void find_cells(const BeltStride& stride, const TrackPlane& about);
-  void find_bearing(const BeltStride& stride, Stance& stance);
   Reaction react(const TrackPlane& plane);
   TrackPlane find_equilibrium(const TrackPlane& from, double acceleration_m_per_s2, int iterations);
   void compact(const BeltStride& stride, std::size_t side);
@@ -123,14 +121,14 @@ class BeltGround {
   TrackGeometry tracks_;
   BeltFit fit_;
   MaterialFlow flow_;
-  /// Of Bekker's exponent, as slip-sinkage makes it grow.
-  static constexpr double kExponentStep = 0.02;
-  std::shared_ptr<const PowerTables> powers_;
+  PowerTable power_;
   double cell_area_;
   double bekker_;
   double unloading_pa_per_m_;
   double tan_repose_;
   double dig_remainder_ = 0.0;  // parts of a unit, for what is dug next
+  double pressed_ = 0.0;        // by the belt in this stride, units
+  double thrown_ = 0.0;         // of it, what goes along with the belt
   std::vector<Stance> stances_;
   std::vector<Cell> cells_;
   std::array<std::size_t, 3> sides_{};  // where a side's cells begin

@@ -9,6 +9,7 @@
 #include "hal/sample.h"
 #include "host_sim/core/constants.h"
 #include "host_sim/core/elementary.h"
+#include "host_sim/physics/soil/soil_laws.h"
 
 namespace screed {
 
@@ -66,7 +67,10 @@ BeltShear& BeltShear::operator+=(const BeltShear& more) {
   forward_m += more.forward_m;
   left_m += more.left_m;
   length_m += more.length_m;
-  for (std::size_t i = 0; i < kBeltPatches; ++i) patch_m[i] += more.patch_m[i];
+  for (std::size_t i = 0; i < kBeltPatches; ++i) {
+    patch_m[i] += more.patch_m[i];
+    patch_flow_m[i] += more.patch_flow_m[i];
+  }
   slid_m += more.slid_m;
   moved_m += more.moved_m;
   return *this;
@@ -224,6 +228,7 @@ std::array<BeltShear, 2> BeltMotion::shear() const {
     for (const Eigen::Index side : {0, 1}) {
       BeltShear& belt = belts[static_cast<std::size_t>(side)];
       belt.patch_m[i] = length[side];
+      belt.patch_flow_m[i] = slip_flow(mobilised[side], length[side]);
       belt.forward_m += mobilised[side] * along[side] / kBeltPatches;
       belt.left_m += mobilised[side] * across / kBeltPatches;
       belt.length_m += length[side] / kBeltPatches;

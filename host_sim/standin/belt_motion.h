@@ -69,8 +69,9 @@ struct BeltShear {
   double length_m = 0.0;  ///< of the same, whatever its direction
   /// The same of each patch: the mean is length_m.
   std::array<double, kBeltPatches> patch_m{};
-  double slid_m = 0.0;   ///< along the belt, not weighted
-  double moved_m = 0.0;  ///< of belt or ground, whichever moved more
+  std::array<double, kBeltPatches> patch_flow_m{};  ///< slip_flow() of each patch
+  double slid_m = 0.0;                              ///< along the belt, not weighted
+  double moved_m = 0.0;                             ///< of belt or ground, whichever moved more
 
   BeltShear& operator+=(const BeltShear& more);
 };

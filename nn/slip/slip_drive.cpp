@@ -55,8 +55,8 @@ void choose_soil(Draw& draw, Experiment& e, std::string& ground) {
   e.map.model = "scm";
   e.soil.preset = ground;
   e.soil.cell_m = 0.02;
-  e.soil.overrides.slip_sinkage = draw.between(0.0, 0.4);
-  e.soil.overrides.drag_depth_m = draw.between(0.0, 0.003);
+  e.soil.overrides.slip_bearing = draw.between(0.1, 1.0);
+  e.soil.overrides.slip_layer_m = draw.between(0.0, 0.003);
 }
 
 double max_slope_deg(ScenarioKind kind) {

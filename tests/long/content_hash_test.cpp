@@ -19,12 +19,12 @@ struct KnownRun {
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "e5a5071a4f22145fdaf6afdaa61e6a4a"},
-    {"soft_bed", "--duration 6", "e36c37299821ce686bd8b155d81fb123"},
-    {"soft_bed", "--hal surrogate --duration 10", "77d2612e280af1d93230014082575739"},
+    {"soft_bed", "--duration 6", "7d1236bbb204cb5e50a7731f4881af78"},
+    {"soft_bed", "--hal surrogate --duration 10", "870cfade8418b078ef1d2d82b5113f0d"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
-     "--set soil.drag_depth=0.002 --duration 4",
-     "85a29ed28ce529771f5f3c92996647e0"},
+     "--set soil.slip_layer=0.002 --duration 4",
+     "09fa64b50db164a6e78709d2ff2c91b4"},
     {"gravel_bed", "--duration 1", "90e600f7d9104c20cf1e6a16d5fca9f7"},
 }};
 
@@ -45,7 +45,7 @@ TEST_F(ContentHash, OfKnownRunsIsTheSame) {
 TEST_F(ContentHash, OfABedUnderTheRobotIsTheSame) {
   const Result result = run(
       "soil robot --json --bulldozing --avalanches --wrap --relief 0.02 --size 1.5 --duration 1 "
-      "--left 0.1 --right 0.2 --drag-depth 0.001");
+      "--left 0.1 --right 0.2 --slip-layer 0.001");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(Json::parse(result.out)["heights_hash"].get<std::string>(),
             "c6b2c753aa7a1978966c8b88fe7d436b");

@@ -126,7 +126,7 @@ TEST(SoilDriving, TenMinutesOfDigging) {
   for (const char* name : {"gravel", "viper"}) {
     WorldOptions options = drive_options(0.0, 0.0);
     options.soil = soil_preset(name);
-    options.soil->drag_depth_m = 0.002;
+    options.soil->slip_layer_m = 0.002;
     options.soil->compaction = 0.3;
     options.physics_step_s = 0.005;
     Parameters parameters = drive_parameters();

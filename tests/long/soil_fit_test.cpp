@@ -32,13 +32,13 @@ TEST(SoilFitTest, FindsWhatMadeTheFigures) {
     row.sinkage_m = r.sinkage_m;
     row.side_force_n.reset();
   }
-  problem.free = {"slip_sinkage", "K", "rim_friction"};
-  problem.soil.slip_sinkage = 0.35;
+  problem.free = {"slip_bearing", "K", "rim_friction"};
+  problem.soil.slip_bearing = 0.6;
   problem.soil.shear_modulus_m = 0.02;
   problem.rim.friction = 0.5;
   const SoilFit fit = fit_soil(problem);
-  EXPECT_NEAR(fit.soil.slip_sinkage, 0.232, 1e-3);
-  EXPECT_NEAR(fit.soil.shear_modulus_m, 0.0127, 1e-4);
+  EXPECT_NEAR(fit.soil.slip_bearing, soil_preset("cmu_2022").slip_bearing, 1e-3);
+  EXPECT_NEAR(fit.soil.shear_modulus_m, soil_preset("cmu_2022").shear_modulus_m, 1e-4);
   EXPECT_NEAR(fit.rim.friction, 0.397, 1e-3);
   EXPECT_LT(fit.spread, 0.01);
   for (const FittedParameter& p : fit.parameters) EXPECT_LT(p.standard_error, 1e-3) << p.key;

@@ -49,7 +49,7 @@ PlantOptions options_on(const Bed& bed, const Gear& gear) {
   options.vehicle.track_model = gear.model;
   if (bed.soil) {
     options.soil = soil_preset("lete_sand");
-    options.soil->drag_depth_m = gear.tracks ? 0.002 : 0.0;  // wheels would dig themselves in
+    options.soil->slip_layer_m = gear.tracks ? 0.002 : 0.0;  // wheels would dig themselves in
     options.soil_options.bulldozing = true;
     options.soil_options.avalanches = true;
   }
@@ -195,7 +195,7 @@ TEST(WallDrive, SoilPilesUpAtTheWalls) {
   Bed bed = kBeds[1];
   PlantOptions options = options_on(bed, kGears[0]);
   options.soil = soil_preset("viper");
-  options.soil->drag_depth_m = 0.002;
+  options.soil->slip_layer_m = 0.002;
   options.battery.begin_with(0.95);  // 8.1 V
   options.starts[0].attitude.heading = 45.0 * kDeg;
   options.starts[0].x_m = options.starts[0].y_m = 0.35;

@@ -18,7 +18,7 @@ namespace {
 
 SoilParameters gravel() {
   SoilParameters soil = soil_preset("gravel");
-  soil.drag_depth_m = 0.0029;
+  soil.slip_layer_m = 0.0029;
   return soil;
 }
 

@@ -20,7 +20,7 @@ class Outcome : public Program {
         "spin.ini",
         "[experiment]\nname = spin\nseed = 5\nalgorithm = drive\nduration = 10\n"
         "[drive]\nspeed = 0\nyaw_rate = 90\n[map]\nsize = 1\nmodel = scm\n[soil]\npreset = gravel\n"
-        "drag_depth = 0.002\ncell = 0.01\n" +
+        "slip_layer = 0.002\ncell = 0.01\n" +
             more);
   }
 };

@@ -67,5 +67,31 @@ TEST_F(Program, SoilWheelDrawsMeasurementsWithAndWithoutErrors) {
   EXPECT_NE(both.err.find("--limit-only"), std::string::npos) << both.err;
 }
 
+TEST_F(Program, SoilWheelStepsItsSlipOrFollowsASchedule) {
+  const Result steps =
+      run("soil wheel --soil cmu_2022 --speed 0.05 --duration 2 --slip-angle 0,90 --rim 0.05,0.2 "
+          "--series steps.csv --json");
+  ASSERT_EQ(steps.exit_code, 0) << steps.err;
+  const Json lines = Json::parse(steps.out).at("results");
+  ASSERT_EQ(lines.size(), 16U);
+  EXPECT_NEAR(lines[0].at("value").get<double>(), lines[1].at("value").get<double>(), 0.1)
+      << "without slip it stays as deep";
+  EXPECT_GT(lines[5].at("value").get<double>(), lines[4].at("value").get<double>() + 1.0);
+  EXPECT_EQ(read(root_ / "steps.csv").find("slip_angle_deg,rim_m_s,slip_path_m,steady,sinkage_m"),
+            0U);
+
+  write("drive.csv", "time_s,rim_m_s,travel_m_s\n0,0.05,0.05\n1,0.1,0.05\n");
+  const Result belt =
+      run("soil wheel --soil viper --schedule drive.csv --belt 0.1 --lug-height 0.002 "
+          "--series belt.csv --charts out");
+  ASSERT_EQ(belt.exit_code, 0) << belt.err;
+  EXPECT_NE(read(root_ / "belt.csv").find("\n1.000,"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(root_ / "out" / "soil_schedule_sinkage.svg"));
+
+  EXPECT_NE(run("soil wheel --belt 0.1").err.find("--schedule or --rim"), std::string::npos);
+  EXPECT_NE(run("soil wheel --slip-angle 85").err.find("allowed is -80 to 80"), std::string::npos);
+  EXPECT_EQ(run("soil wheel --rim 0.1 --limit-only").exit_code, 2);
+}
+
 }  // namespace
 }  // namespace screed::testing

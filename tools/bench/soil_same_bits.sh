@@ -10,10 +10,10 @@ trap 'rm -rf "$work"' EXIT
 
 figures() {  # PROGRAM: heights' hash and the robot's way, without the time it took
   "$1" soil robot --json --bulldozing --avalanches --wrap --relief 0.02 --size 1.5 --duration 2 --left 0.1 --right 0.2 \
-    --drag-depth 0.001 \
+    --slip-layer 0.001 \
     | grep -A1 -E 'heights_hash|"name": "(mean_load_n|lower_by_mm|distance_m|away_m)"'
   "$1" soil robot --json --soil gravel --bulldozing --avalanches --duration 1 --left 0.1 --right 0.2 | grep heights_hash
-  "$1" soil robot --json --soil lete_sand --slip-sinkage 0.3 --duration 1 --cell 0.01 | grep heights_hash
+  "$1" soil robot --json --soil lete_sand --slip-bearing 0.3 --duration 1 --cell 0.01 | grep heights_hash
 }
 
 on_particles() {  # PROGRAM FOLDER: the run's content hash

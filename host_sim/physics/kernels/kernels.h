@@ -82,12 +82,14 @@ struct alignas(64) CellBlock {
   // Answered by divide_cells:
   double covered[kLanes];
   // By sample_cells:
-  double share[kLanes];     ///< of the cell that carries load
-  double pressed[kLanes];   ///< plastic sinkage that this contact requires, earlier ones included
-  double pressure[kLanes];  ///< mean, at that sinkage, before the body moves in this step
-  double rate[kLanes];      ///< of that pressure with further sinking, Pa/m
-  double unload[kLanes];    ///< of that pressure when the body rises, Pa/m
-  double slope_x[kLanes];   ///< horizontal force of the normal stress, over its vertical force
+  double share[kLanes];      ///< of the cell that carries load
+  double pressed[kLanes];    ///< plastic sinkage that this contact requires, earlier ones included
+  double pressure[kLanes];   ///< mean, at that sinkage, before the body moves in this step
+  double rate[kLanes];       ///< of that pressure with further sinking, Pa/m
+  double unload[kLanes];     ///< of that pressure when the body rises, Pa/m
+  double capacity[kLanes];   ///< what it bears without slip, Pa: the pressure, where nothing slips
+  double hardening[kLanes];  ///< of that with further sinking, Pa/m
+  double slope_x[kLanes];    ///< horizontal force of the normal stress, over its vertical force
   double slope_y[kLanes];
   double tilt_x[kLanes];  ///< the same of the surface alone, mean over the touching part
   double tilt_y[kLanes];
@@ -104,13 +106,15 @@ struct alignas(64) CellBlock {
   double shears[kLanes];  ///< how much this cell gives of what the surface drags away, relative
 };
 
-/// The force of a cell over the body's downward displacement there: max(0, min(elastic, virgin)),
-/// each a straight line, and of what goes down its damper.
+/// The force of a cell over the body's downward displacement there: max(0, min(elastic, virgin,
+/// flowing)), each a straight line, and of what goes down its damper.
 struct alignas(64) SpringBlock {
   double elastic[kLanes];        ///< N, now
   double elastic_slope[kLanes];  ///< N/m
   double virgin[kLanes];         ///< N, now
   double virgin_slope[kLanes];   ///< N/m
+  double flowing[kLanes];        ///< N, now: what bears while it slips
+  double flowing_slope[kLanes];  ///< N/m
   double damper[kLanes];         ///< N/m over this step
   double x[kLanes];              ///< position from the body's centre of mass, m
   double y[kLanes];
@@ -205,6 +209,7 @@ struct ShearPlaces {
     double* value_along;
     double* value_across;
     double* sliding;
+    double* flowing;
   };
   Side side[2];
 };
@@ -281,6 +286,11 @@ struct ReactionLaw {
   double per_width;
   ShearView shear;
   ShearView aside;
+  double slip_bearing;  ///< soil_laws.h
+  double slip_flow;     ///< its factor
+  double dt;
+  Triple velocity;  ///< of the footprint's centre
+  double turning;   ///< of the body about the vertical, rad/s
 };
 
 struct ReactionSums {
@@ -298,6 +308,9 @@ struct ReactionSums {
   double slip = 0.0;        ///< speed times mobilised share
   double slip_along = 0.0;  ///< its parts ahead and to the left, signed
   double slip_across = 0.0;
+  // Not times the share:
+  double units = 0.0;   ///< by which cells yield, units of height
+  double thrown = 0.0;  ///< those that go the way of the slip
 };
 
 /// From the first to behind the last of some heights that are above a line; none: end = 0.
@@ -340,6 +353,8 @@ struct Kernels {
                        const CellLaw& law, SpringBlock* springs, CellSums& sums);
   /// StressShape's lift at one sine of an angle, m.
   double (*stress_lift)(const StressShape& shape, double sine);
+  /// What slip takes from the bearing of cells.
+  void (*weaken)(CellBlock* cells, SpringBlock* springs, size_t blocks, const ReactionLaw& law);
   /// `damped`: springs have dampers.
   void (*spring_sums)(const SpringBlock* springs, size_t blocks, const Tilt& moved, bool damped,
                       SpringSums& sums);

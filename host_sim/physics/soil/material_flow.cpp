@@ -72,14 +72,22 @@ void MaterialFlow::begin_footprint(const PressedPatch& patch) {
   footprints_.push_back({patch, covered_list_.size(), pressed_.size(), 0});
 }
 
-void MaterialFlow::dig(const DugPatch& patch, int64_t units) {
+void MaterialFlow::dig(const DugPatch& patch, int64_t units, double share_of_pressed) {
+  int64_t moved = 0;
+  if (share_of_pressed > 0.0) {
+    int64_t& pressed = footprints_.back().units;
+    taken_remainder_ += share_of_pressed * static_cast<double>(pressed);
+    moved = std::min(pressed, static_cast<int64_t>(taken_remainder_));
+    taken_remainder_ -= static_cast<double>(moved);
+    pressed -= moved;
+  }
+  const int64_t pressed_moved = moved;
   double total = 0.0;
   for (const Sheared& here : sheared_) total += here.weight;
   if (total > 0.0 && units > 0) {
     const double per_weight = static_cast<double>(units) / total;
     double passed = 0.0;
     int64_t taken = 0;
-    int64_t moved = 0;
     for (size_t i = 0; i < sheared_.size(); ++i) {
       passed += sheared_[i].weight;
       const bool last = i + 1 == sheared_.size();
@@ -93,7 +101,9 @@ void MaterialFlow::dig(const DugPatch& patch, int64_t units) {
       }
       taken = until;
     }
-    in_transit_ += moved;
+    in_transit_ += moved - pressed_moved;
+    dug_.push_back({patch, moved});
+  } else if (moved > 0) {
     dug_.push_back({patch, moved});
   }
   sheared_.clear();

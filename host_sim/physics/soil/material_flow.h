@@ -83,10 +83,11 @@ class MaterialFlow {
   /// The footprint whose dig() comes next slips over this node; weights are relative.
   void shear(size_t node, double weight) { sheared_.push_back({node, weight}); }
   /// Takes `units` from the nodes given to shear() since the last call, in proportion to their
-  /// weights; the reference goes down with the surface. Those that are not compacted are in transit
+  /// weights (none without such nodes); the reference goes down with the surface. Those that are
+  /// not compacted, and this share of what the current footprint has pressed down, are in transit
   /// until they are deposited around the patch, more of them to where something is carried than to
-  /// where it comes from. Takes nothing without sheared nodes.
-  void dig(const DugPatch& patch, int64_t units);
+  /// where it comes from.
+  void dig(const DugPatch& patch, int64_t units, double share_of_pressed = 0.0);
   /// Queues every node: slide() then checks the whole bed. A new bed starts with an empty queue.
   void enqueue_all();
   /// Slides slopes above the angle of repose, at most `max_moves` moves; returns the moves made.
@@ -171,7 +172,8 @@ class MaterialFlow {
   };
   std::vector<Sheared> sheared_;  // by the current footprint
   std::vector<Dug> dug_;
-  uint32_t sequence_index_ = 0;  // of the next point to try for what was dug, minus 1
+  double taken_remainder_ = 0.0;  // parts of a unit, of what was pressed
+  uint32_t sequence_index_ = 0;   // of the next point to try for what was dug, minus 1
   struct DepositNode {
     GridNode place;
     double along;  // from the patch's centre, m

@@ -19,8 +19,8 @@ constexpr double kStableStiffness = 0.3;
 // Moves of sliding material in one step: what is left over goes on in the next.
 constexpr int64_t kSlidesPerStep = 400;
 
-/// The slip that soil has felt: slip-sinkage comes with the soil that is sheared, so a footprint
-/// averages its slip over the length of its contact.
+/// Where a wheel presses most follows its slip over the length of its contact, and not the
+/// trembling of one that stands.
 void average_slip(FootprintContact& contact, const Eigen::Vector3d& velocity, double dt) {
   const Footprint& footprint = *contact.footprint;
   ContactMemory& kept = *contact.memory;
@@ -39,6 +39,7 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
       flow_(std::move(surface), soil.repose_deg,
             options.bulldozing ? Compaction{soil.compaction, soil.compaction_depth_m}
                                : Compaction{1.0, 0.0}),
+      power_(soil.exponent),
       tan_friction_(portable::tan(soil.friction_deg * kDegree)),
       tan_repose_(portable::tan(soil.repose_deg * kDegree)),
       passive_(soil) {
@@ -61,7 +62,6 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
       lattices_[kFull].y.push_back(place(j));
     }
   }
-  tables_ = power_tables(soil.exponent, kExponentStep, soil.slip_sinkage);
 }
 
 TerrainReaction SoilBed::press(const Footprint& footprint, const FootprintMotion& motion, double dt,
@@ -105,6 +105,12 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
       kept.leave();
     }
     advance_shear(range, body, contact, dt);
+    if (!range.touching) continue;
+    ranges_.back().reaction = reaction_law(range, body, contact, dt);
+    if (soil_.slip_bearing < 1.0) {
+      kernels_.weaken(&cells_[range.begin], &springs_[range.begin], range.end - range.begin,
+                      ranges_.back().reaction);
+    }
   }
   if (!touching) {
     memory = {};

@@ -14,7 +14,6 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -111,7 +110,6 @@ class SoilBed final : public Terrain {
   };
   struct Law {  // of the soil under one footprint in one step
     CellLaw cell{};
-    const PowerTable* table = nullptr;
     WheelStress stress;
   };
   struct Range {  // of one footprint among the blocks of cells_
@@ -122,6 +120,7 @@ class SoilBed final : public Terrain {
     double rear = 0.0;  // of the contact along the contour, m
     double front = 0.0;
     bool touching = false;
+    ReactionLaw reaction{};
   };
 
   Range find_cells(const FootprintContact& contact, double elastic, double dt);
@@ -144,16 +143,14 @@ class SoilBed final : public Terrain {
                            const FootprintContact& contact, double dt) const;
   void react(const Range& range, const PressingBody& body, FootprintContact& contact, double dt);
   void settle(const Range& range, bool slips);
-  void dig_below(const ReactionSums& sums, const ReactionLaw& law, const Eigen::Isometry3d& pose,
+  void dig_below(const ReactionSums& sums, const ReactionLaw& law, const FootprintContact& contact,
                  double dt);
 
   SoilParameters soil_;
   SoilOptions options_;
   const Kernels& kernels_;
   MaterialFlow flow_;
-  /// Of Bekker's exponent, finer than anybody knows it.
-  static constexpr double kExponentStep = 0.005;
-  std::shared_ptr<const PowerTables> tables_;  // of n, and of what slip-sinkage makes of it
+  PowerTable power_;
   double tan_friction_;
   double tan_repose_;
   double cell_area_;

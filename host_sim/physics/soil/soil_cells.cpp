@@ -47,19 +47,14 @@ SoilBed::Law SoilBed::law_below(const FootprintContact& contact, const RunFrame&
                                 double elastic, double dt) const {
   const Footprint& footprint = *contact.footprint;
   const ContactMemory& memory = *contact.memory;
-  // Slip-sinkage raises the exponent.
-  const double exponent_index =
-      std::min(std::abs(memory.slip), 1.0) * soil_.slip_sinkage / kExponentStep;
-  const PowerTable& table = (*tables_)[static_cast<size_t>(std::lround(exponent_index))];
   // The patch of the last step decides this step's b; at the first touch the body itself does.
   const double b =
       memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, kMinPatch_m) : footprint.narrow();
   Law law;
-  law.table = &table;
   law.cell.bekker = bekker_modulus(soil_, b);
   law.cell.elastic = elastic;
-  law.cell.exponent = table.exponent();
-  law.cell.power = table.lines();
+  law.cell.exponent = power_.exponent();
+  law.cell.power = power_.lines();
   law.cell.rebound = footprint.is_wheel() ? soil_.exit_angle * soil_.exit_angle : 0.0;
   law.cell.half_square = 0.5 * surface().spacing_m() / samples_per_side_;
   law.cell.cell_area = cell_area_;
@@ -86,8 +81,7 @@ SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elast
   // Unloaded soil rises by its elastic part: where the body is higher above the ground than that
   // there is no contact. Behind a wheel it rises by more, and the wheel is still touching.
   const double deepest = memory.sinkage + kStepSinkage_m;
-  const double rebound_m =
-      law.bekker * range.law.table->power(deepest) / elastic + law.rebound * deepest;
+  const double rebound_m = law.bekker * power_.power(deepest) / elastic + law.rebound * deepest;
   // One cell of margin: contact is found cell by cell, so the path may have begun up to a cell
   // earlier.
   PathHistory path = memory.path;

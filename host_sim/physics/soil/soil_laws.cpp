@@ -1,25 +1,11 @@
-// Bekker's law in closed form; tables of its powers, shared between worlds.
+// Bekker's law in closed form, and the table of its powers.
 #include "host_sim/physics/soil/soil_laws.h"
 
 #include <cmath>
-#include <mutex>
 
 #include "host_sim/core/elementary.h"
 
 namespace screed {
-
-namespace {
-
-struct KnownTables {
-  double n;
-  double step;
-  size_t count;
-  std::weak_ptr<const PowerTables> tables;
-};
-constinit std::mutex known_in_use;
-constinit std::vector<KnownTables> known;
-
-}  // namespace
 
 double bekker_pressure_pa(const SoilParameters& soil, double breadth_m, double depth_m) {
   return bekker_modulus(soil, breadth_m) * portable::pow(depth_m, soil.exponent);
@@ -41,22 +27,6 @@ PowerTable::PowerTable(double exponent) : exponent_(exponent), lines_(kLines) {
     low = high;
     low_power = high_power;
   }
-}
-
-std::shared_ptr<const PowerTables> power_tables(double n, double step, double most_more) {
-  const auto count = static_cast<size_t>(std::ceil(most_more / step)) + 1;
-  const std::lock_guard lock(known_in_use);
-  std::erase_if(known, [](const KnownTables& entry) { return entry.tables.expired(); });
-  for (const KnownTables& entry : known) {
-    if (entry.n != n || entry.step != step || entry.count != count) continue;
-    if (std::shared_ptr<const PowerTables> tables = entry.tables.lock()) return tables;
-  }
-  PowerTables made;
-  made.reserve(count);
-  for (size_t i = 0; i < count; ++i) made.emplace_back(n + static_cast<double>(i) * step);
-  auto tables = std::make_shared<const PowerTables>(std::move(made));
-  known.push_back({n, step, count, tables});
-  return tables;
 }
 
 }  // namespace screed

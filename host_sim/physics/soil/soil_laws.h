@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -65,13 +64,6 @@ class PowerTable {
   std::vector<Line> lines_;
 };
 
-using PowerTables = std::vector<PowerTable>;
-
-/// Of n, n + step and so on, to n + most_more or just above it: how slip-sinkage raises Bekker's
-/// exponent. All worlds of a process that ask for the same share them (a table has 12 kB); the last
-/// one to go takes them along. May be called from any thread.
-std::shared_ptr<const PowerTables> power_tables(double n, double step, double most_more);
-
 // Resistance of soil that a body pushes ahead of it or aside: the passive earth pressure on a
 // vertical face (M. G. Bekker, Introduction to Terrain-Vehicle Systems, 1969; I. Hegedus, A
 // simplified method for the determination of bulldozing resistance, Land Locomotion Laboratory
@@ -111,13 +103,35 @@ class PassivePressure {
   double per_depth_ = 0.0;
 };
 
+// What slip takes from the bearing of soil. Below a surface that only goes into the soil, or out of
+// it, the soil bears as without slip; below one that only slides over it, by slip_bearing of that.
+// Between them the share grows with the ratio of the speeds at which the surface moves along its
+// normal and the soil flows along with it:
+//   share = min(1, slip_bearing + (1 - slip_bearing) |v_normal| / flow)
+//   flow  = 1.45 m^2 v_sliding
+// m: the mobilised share of the shear strength (shear_field.h). The form is that of footings under
+// an inclined load, whose capacity falls as they move along more than down (R. Nova, L. Montrasio,
+// Geotechnique 41(2), 1991; G. Gottardi, G. T. Houlsby, R. Butterfield, Geotechnique 49(4), 1999).
+// Its numbers are fitted to wheels: docs/studies/soil.md.
+
+inline constexpr double kSlipFlow = 1.45;
+
+inline double slip_flow(double mobilised_squared, double sliding) {
+  return kSlipFlow * mobilised_squared * sliding;
+}
+
+inline double bearing_under_slip(double slip_bearing, double normal, double flow) {
+  if (!(std::abs(normal) < flow)) return 1.0;
+  return slip_bearing + (1.0 - slip_bearing) * std::abs(normal) / flow;
+}
+
 // Where below a rolling wheel the soil's stress is greatest, and where contact ends (J. Y. Wong,
 // A. R. Reece, Prediction of rigid wheel performance based on the analysis of soil-wheel stresses,
 // Journal of Terramechanics 4(1 and 2), 1967).
 //
 // With angles from the lowest point of the wheel on its path, positive ahead, theta_1 where it
 // enters the soil:
-//   theta_m = (c1 + c2 s) theta_1, s >= 0;   (c1 + c2_braked |s|) theta_1, s < 0
+//   theta_m = c1 theta_1, s >= 0;   (c1 + c2_braked |s|) theta_1, s < 0
 //   theta_2 = -c3 theta_1
 // Ahead of theta_m a point bears as deep as it is. Behind, it bears as the point theta_e ahead
 // does:
@@ -135,8 +149,7 @@ class WheelStress {
   /// point.
   WheelStress(const SoilParameters& soil, double radius_m, double entry_rad, double slip,
               double rolled) {
-    const double share = slip >= 0.0 ? soil.front_angle + soil.front_angle_driven * slip
-                                     : soil.front_angle - soil.front_angle_braked * slip;
+    const double share = soil.front_angle + soil.front_angle_braked * std::max(0.0, -slip);
     const double middle = std::clamp(share, 0.0, kMaxAhead) * entry_rad;
     known_ = true;
     shape_.entry = entry_rad;

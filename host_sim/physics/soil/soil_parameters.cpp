@@ -48,28 +48,31 @@ SoilParameters soil(const char* name, double k_phi, double k_c, double n, double
   return s;
 }
 
+/// As of gravel: nobody has measured it on sand.
+constexpr double kCarry = 0.66;
+
 /// The simulant of Ding et al., 2011. Published: k_phi, k_c, c, phi. E as for the other sands. c1
 /// and c3 assumed, near the published ones of their wheels. Fitted to the smooth wheel
-/// (docs/studies/soil.md): n, slip_sinkage, K, c2.
+/// (docs/studies/soil.md): n, K, slip_bearing.
 SoilParameters ding_2011() {
-  SoilParameters s = soil("ding_2011", 2407.4e3, 15.6e3, 0.94, 250.0, 31.9, 0.0041, 1e8);
-  s.slip_sinkage = 0.54;
+  SoilParameters s = soil("ding_2011", 2407.4e3, 15.6e3, 0.943, 250.0, 31.9, 0.0039, 1e8);
+  s.slip_bearing = 0.064;
+  s.slip_carry = kCarry;
   s.front_angle = 0.3;
-  s.front_angle_driven = 0.48;
   s.exit_angle = 0.3;
   return s;
 }
 
 /// The sand of Carnegie Mellon University's wheel tests, 2022. Published: k_phi, n, phi, density.
-/// c1 assumed, as above. Fitted to the smooth wheel at slip angle 0 (docs/studies/soil.md):
-/// slip_sinkage, K, c2, c2_braked, c3.
+/// c1 assumed, as above. Fitted to the smooth wheel at slip angle 0, its transients and its steady
+/// states (docs/studies/soil.md): K, slip_bearing, c2_braked, c3.
 SoilParameters cmu_2022() {
-  SoilParameters s = soil("cmu_2022", 8e6, 0.0, 1.46, 0.0, 29.0, 0.0127, 1e8);
-  s.slip_sinkage = 0.232;
-  s.front_angle = 0.3;
-  s.front_angle_driven = 0.192;
-  s.front_angle_braked = 0.399;
-  s.exit_angle = 0.618;
+  SoilParameters s = soil("cmu_2022", 8e6, 0.0, 1.46, 0.0, 29.0, 0.010, 1e8);
+  s.slip_bearing = 0.283;
+  s.slip_carry = kCarry;
+  s.front_angle = 0.25;
+  s.front_angle_braked = 0.515;
+  s.exit_angle = 0.652;
   s.density_kg_per_m3 = 1330.0;
   return s;
 }
@@ -80,8 +83,8 @@ SoilParameters gravel() {
   s.repose_deg = 34.4;
   s.compaction = 0.37;
   s.compaction_depth_m = 0.003;
-  s.drag_depth_m = 0.002;
-  s.drag_share = 0.66;
+  s.slip_layer_m = 0.002;
+  s.slip_carry = 0.66;
   return s;
 }
 

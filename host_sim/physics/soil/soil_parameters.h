@@ -40,15 +40,14 @@ namespace screed {
     "share of the sunk volume that is compacted") \
   X(compaction_depth_m, "compaction_depth", "--compaction-depth", "m",   0.0,  1.0,  0.0, \
     "how much a place may lose by compaction in all; 0: any") \
-  X(drag_depth_m,       "drag_depth",    "--drag-depth",    "m",         0.0,  0.1,  0.0, \
-    "thickness of the layer that a slipping surface digs away") \
-  X(drag_share,         "drag_share",    "--drag-share",    "",          0.0,  1.0,  0.0, \
-    "share of the surface's slip with which that layer goes along") \
-  X(slip_sinkage,       "slip_sinkage",  "--slip-sinkage",  "",          0.0,  2.0,  0.0,   "growth of n with slip") \
+  X(slip_layer_m,       "slip_layer",    "--slip-layer",    "m",         0.0,  0.1,  0.0, \
+    "thickness of the layer that goes along with a slipping surface") \
+  X(slip_carry,         "slip_carry",    "--slip-carry",    "",          0.0,  1.0,  0.0, \
+    "share of the surface's slip with which it goes along") \
+  X(slip_bearing,       "slip_bearing",  "--slip-bearing",  "",          0.0,  1.0,  1.0, \
+    "share of its bearing that soil keeps below a surface that slides over it; 1: all") \
   X(front_angle,        "c1",            "--c1",            "",          0.0,  0.9,  0.0, \
-    "angle of a wheel's greatest stress over its entry angle, at slip 0; 0: below the axle") \
-  X(front_angle_driven, "c2",            "--c2",            "",          -0.9, 0.9,  0.0, \
-    "growth of c1 with slip, driven") \
+    "angle of a wheel's greatest stress over its entry angle; 0: below the axle") \
   X(front_angle_braked, "c2_braked",     "--c2-braked",     "",          -0.9, 0.9,  0.0, \
     "growth of c1 with slip, braked") \
   X(exit_angle,         "c3",            "--c3",            "",          0.0,  0.9,  0.0, \
@@ -58,10 +57,11 @@ namespace screed {
 // clang-format on
 
 /// Bekker pressure-sinkage p = (k_c / b + k_phi) z^n with elastic unloading, Janosi-Hanamoto shear
-/// tau = (c + p tan phi) (1 - exp(-j / K)), j along the running surface (shear_field.h). With slip
-/// s the exponent is n + slip_sinkage |s| (Ding et al. 2011). Below a wheel the greatest stress is
-/// at (c1 + c2 s) times the entry angle, and contact ends at -c3 times it (soil_laws.h). What is
-/// pushed ahead resists by its density (soil_laws.h).
+/// tau = (c + p tan phi) (1 - exp(-j / K)), j along the running surface (shear_field.h). What
+/// slides over soil is borne by down to slip_bearing times that pressure (soil_laws.h). Below a
+/// wheel the greatest stress is at c1 times the entry angle, braked at (c1 + c2_braked |s|) times
+/// it, and contact ends at -c3 times it (soil_laws.h). What is pushed ahead resists by its density
+/// (soil_laws.h).
 /// Sources: M. G. Bekker, Introduction to Terrain-Vehicle Systems, 1969; Z. Janosi, B. Hanamoto,
 /// 1961; J. Y. Wong, A. R. Reece, Journal of Terramechanics 4, 1967; J. Y. Wong, Theory of Ground
 /// Vehicles, ch. 2.

@@ -14,6 +14,12 @@
 //   units         = (along_elastic - pressure) / E                  in units of height
 //   damped        = pressure + R max(0, sinking / dt) share     -v_z where the motion is imposed
 //
+// Slip. A surface that slides over soil is borne by less (soil_laws.h). v is its speed where the
+// ground stays, n its normal; what the body sinks in the step is part of it:
+//   flow     = 1.45 |m|^2 sliding
+//   share    = min(1, slip_bearing + (1 - slip_bearing) (|v n| + max(0, sinking / dt)) / flow)
+//   pressure = share times that of Bekker's curve
+//
 // Shear. m is the mobilised share of the strength, along and across, carried with the material of
 // the running surface (shear_field.h); it acts at the centre of pressure. A surface has a friction
 // and adhesion of its own: where it holds less than the soil, it slips on the soil.
@@ -32,17 +38,22 @@
 //   sideways = -R(z) A share / width aside
 // Both act on the axle.
 //
-// Digging. A layer of `drag_depth` moves with the slipping surface. `share` is a cell's touching
-// part; variances are of the cells' positions, weighed with it:
+// What slip takes along. A layer goes with the slipping surface: `slip_layer`, or what the
+// surface's lugs hold between them, where that is more (A. R. Reece, Principles of soil-vehicle
+// mechanics, Proceedings of the Institution of Mechanical Engineers 180(2A), 1965). `share` is a
+// cell's touching part; variances are of the cells' positions, weighed with it:
 //   slip    = sum(share |m| sliding) / sum(share)                     mean speed, m/s
 //   sides   = sqrt(12 variance + edge^2)                              of the touched rectangle
-//   volume  = drag_depth slip dt width
+//   volume  = layer slip dt width
+// Of the soil by which a cell yields, a part goes the way of the flow, the rest is pressed aside
+// (MaterialFlow::deposit()):
+//   thrown  = 1 - (|v n| + max(0, sinking / dt)) / flow               none where that is negative
+// Both go along with the surface, the slower the deeper they lie:
+//   carried = slip_carry (volume + thrown) length                     the way the surface slips
 // The layer slips in the direction of all that shears it. Gravity does so, too: down a slope theta
-// with tan(theta) / tan(phi) of what makes it slip, so it goes that way with this part of its
-// speed, and by gravity no faster than it slips.
-//   carried = drag_depth slip dt area min(1, tan(theta) / tan phi)    volume times way, downhill
-// and it goes along with the surface, the slower the deeper in the layer; both add up:
-//   carried = drag_depth drag_share slip dt area                      the way the surface slips
+// with tan(theta) / tan(repose) of what makes it slip, so it goes that way with this part of its
+// speed, and by gravity no faster than it slips:
+//   carried = layer slip dt area min(1, tan(theta) / tan(repose))     volume times way, downhill
 #include <algorithm>
 #include <cmath>
 
@@ -57,11 +68,8 @@ constexpr double kNoLimit = 1e12;
 
 }  // namespace
 
-// A layer of the soil goes along with a slipping surface: slip times depth times the footprint's
-// width a second. It comes from under the whole of the footprint and heaves the ground around it,
-// as far as the footprint is wide.
 void SoilBed::dig_below(const ReactionSums& sums, const ReactionLaw& law,
-                        const Eigen::Isometry3d& pose, double dt) {
+                        const FootprintContact& contact, double dt) {
   if (sums.area <= 0.0) return;
   const double edge = surface().spacing_m();
   const double per_share = 1.0 / sums.area;
@@ -71,24 +79,28 @@ void SoilBed::dig_below(const ReactionSums& sums, const ReactionLaw& law,
     return 0.5 * std::sqrt(12.0 * std::max(0.0, second * per_share - mean * mean) + edge * edge);
   };
   const Eigen::Vector3d forward = vector(law.level_ahead);
+  const Eigen::Vector3d left = vector(law.level_left);
   DugPatch patch;
   patch.forward = forward.head<2>();
-  patch.centre = (pose.translation() + along * forward + across * vector(law.level_left)).head<2>();
+  patch.centre =
+      (contact.footprint->pose().translation() + along * forward + across * left).head<2>();
   patch.half_length = half_side(sums.sum_along_squared, along);
   patch.half_width = half_side(sums.sum_across_squared, across);
   patch.band = 2.0 * std::min(patch.half_length, patch.half_width);
-  const double volume = soil_.drag_depth_m * dt * per_share * 2.0 * sums.slip * patch.half_width;
+  const double layer = std::max(soil_.slip_layer_m, contact.motion.lug_height_m);
+  const double volume = layer * dt * per_share * 2.0 * sums.slip * patch.half_width;
   dig_remainder_ += volume / (cell_area_ * kHeightUnit_m);
   const Eigen::Vector3d normal = vector(law.axis_x).cross(vector(law.axis_y));
   const Eigen::Vector2d fall = normal.head<2>() / std::max(normal.z(), 1e-3);
   const double part = 1.0 / std::max(tan_repose_, fall.norm());
-  patch.carried = soil_.drag_depth_m * dt * sums.slip / kHeightUnit_m * part * fall;
-  const Eigen::Vector2d dragged = sums.slip_along * vector(law.level_ahead).head<2>() +
-                                  sums.slip_across * vector(law.level_left).head<2>();
-  patch.carried += soil_.drag_depth_m * soil_.drag_share * dt / kHeightUnit_m * dragged;
+  patch.carried = layer * dt * sums.slip / kHeightUnit_m * part * fall;
+  const Eigen::Vector2d slips =
+      sums.slip_along * forward.head<2>() + sums.slip_across * left.head<2>();
+  patch.carried += layer * soil_.slip_carry * dt / kHeightUnit_m * slips;
+  patch.carried += soil_.slip_carry * 2.0 * patch.half_length * sums.thrown / sums.slip * slips;
   const auto units = static_cast<int64_t>(dig_remainder_);
   dig_remainder_ -= static_cast<double>(units);
-  flow_.dig(patch, units);
+  flow_.dig(patch, units, sums.units > 0.0 ? sums.thrown / sums.units : 0.0);
 }
 
 /// Carries the shear of the running surface, and of the soil beside it, through this step.
@@ -152,13 +164,19 @@ ReactionLaw SoilBed::reaction_law(const Range& range, const PressingBody& body,
   law.omega_y = body.omega.y();
   law.centre_z = centre.z();
   law.radial = options_.normal_stress == NormalStress::kRadial;
-  law.digs = soil_.drag_depth_m > 0.0;
+  law.digs =
+      soil_.slip_bearing < 1.0 || soil_.slip_layer_m > 0.0 || contact.motion.lug_height_m > 0.0;
   law.pushes = !passive_.none() && contact.footprint->kind() == Footprint::Kind::kTrack;
   law.sense = frame.sense;
   law.travel = std::copysign(1.0, memory.path.travel_m);
   law.passive_at_surface = passive_.at_surface_pa();
   law.passive_per_depth = passive_.per_depth_pa_per_m();
   law.per_width = 0.5 / frame.contour.half_width_m;
+  law.slip_bearing = soil_.slip_bearing;
+  law.slip_flow = kSlipFlow;
+  law.dt = dt;
+  law.velocity = triple(body.velocity + body.omega.cross(centre - body.centre));
+  law.turning = body.omega.z();
   law.shear = memory.shear.view();
   law.aside = memory.side.view();
   return law;
@@ -193,7 +211,7 @@ void SoilBed::react(const Range& range, const PressingBody& body, FootprintConta
                     double dt) {
   contact.reaction = {};
   if (!range.touching) return;
-  const ReactionLaw law = reaction_law(range, body, contact, dt);
+  const ReactionLaw& law = range.reaction;
   ReactionSums sums;
   kernels_.react(&cells_[range.begin], &springs_[range.begin], range.end - range.begin, law, sums);
   const bool slips = law.digs && sums.slip > 0.0;
@@ -203,7 +221,7 @@ void SoilBed::react(const Range& range, const PressingBody& body, FootprintConta
   flow_.begin_footprint(
       {velocity.head<2>(), vector(law.level_ahead).head<2>(), contact.memory->patch_b_m});
   settle(range, slips);
-  if (slips) dig_below(sums, law, contact.footprint->pose(), dt);
+  if (slips) dig_below(sums, law, contact, dt);
   contact.memory->sinkage = sums.sinkage;
   TerrainReaction& reaction = contact.reaction;
   reaction.force = vector(sums.force);

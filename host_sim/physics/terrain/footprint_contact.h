@@ -30,7 +30,8 @@ struct FootprintMotion {
   double friction = 0.8;
   /// Against soil: tangent of the angle of friction. Infinite: rough, soil shears on soil.
   double soil_friction = std::numeric_limits<double>::infinity();
-  double adhesion_pa = 0.0;  ///< of soil to the surface
+  double adhesion_pa = 0.0;   ///< of soil to the surface
+  double lug_height_m = 0.0;  ///< of what holds soil and takes it along
   /// That the footprint carries; infinite: the motion is imposed, whatever the force.
   double mass_kg = 1.0;
 };

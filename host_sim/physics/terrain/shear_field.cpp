@@ -68,8 +68,9 @@ ShearPlaces ShearField::places_from(int64_t index) const {
   ShearPlaces places{};
   for (int lane = 0; lane < kLanes; ++lane) {
     const auto at = [&](Property property) { return array(lane, property, index); };
-    places.side[lane] = {at(kAlong),       at(kAcross),     at(kYield),       at(kAheadAlong),
-                         at(kAheadAcross), at(kValueAlong), at(kValueAcross), at(kSliding)};
+    places.side[lane] = {at(kAlong),       at(kAcross),      at(kYield),
+                         at(kAheadAlong),  at(kAheadAcross), at(kValueAlong),
+                         at(kValueAcross), at(kSliding),     at(kFlowing)};
   }
   return places;
 }

@@ -117,6 +117,7 @@ class ShearField {
     kValueAlong,
     kValueAcross,
     kSliding,
+    kFlowing,  // what of the sliding is plastic, m/s
     kProperties
   };
   void lay_out(const RunContour& contour);

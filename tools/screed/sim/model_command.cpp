@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMilli = 1e3;
+constexpr double kMmPerMetre = 1e3;
 constexpr const char* kCorners[2][2] = {{"front left", "rear left"}, {"front right", "rear right"}};
 
 struct ModelArguments {
@@ -118,7 +118,7 @@ void compare_with_board(const std::string& board, CheckedModel& model) {
         "drives {:.2f} times as far and as fast as its firmware reckons",
         board, radius_of_board, radius, radius / radius_of_board));
   }
-  const double tread_of_board = constants.tread_mm / kMilli;
+  const double tread_of_board = constants.tread_mm / kMmPerMetre;
   if (std::abs(model.report.tread_m / tread_of_board - 1.0) > kTolerance) {
     warnings.push_back(
         filled("board {} steers for a tread of {*1000:.0f} mm; this one is {*1000:.0f} mm", board,
@@ -128,7 +128,7 @@ void compare_with_board(const std::string& board, CheckedModel& model) {
   for (const auto& side : model.robot.wheels) {
     for (const AssemblyWheel& wheel : side) motors += is_driven(model.robot, wheel) ? 1 : 0;
   }
-  const double stall_a = constants.motor_nominal_mv / kMilli / motor.motor.resistance_ohm;
+  const double stall_a = constants.motor_nominal_mv / kMmPerMetre / motor.motor.resistance_ohm;
   const double force = motors * motor.motor.torque_per_ampere() * stall_a / radius;
   const double weight = model.report.mass_kg * kGravity_m_per_s2;
   if (force < kMinForceShare * weight) {
@@ -187,7 +187,7 @@ Json describe(const CheckedModel& model) {
 std::string place(const Json& at) {
   // Rounded before it is printed, and + 0.0: no "-0.0".
   const auto tenths = [](const Json& m) {
-    return std::round(kMilli * 10.0 * m.get<double>()) / 10.0 + 0.0;
+    return std::round(kMmPerMetre * 10.0 * m.get<double>()) / 10.0 + 0.0;
   };
   return filled("x {:.1f}, y {:.1f}, z {:.1f} mm", tenths(at[0]), tenths(at[1]), tenths(at[2]));
 }

@@ -36,11 +36,11 @@ Manoeuvre manoeuvre_named(const std::string& name) {
 
 /// The drag depth with which the robot raises so much, to 0.1 mm: the nearest of a row, then
 /// between its neighbours.
-double fit_drag_depth(DigTest test, double raised_m3, const TaskProgress& progress) {
+double fit_slip_layer(DigTest test, double raised_m3, const TaskProgress& progress) {
   constexpr double kMaxDrives = 34.0;
   int drives = 0;
-  const auto miss = [&](double drag_depth_m) {
-    test.soil.drag_depth_m = drag_depth_m;
+  const auto miss = [&](double slip_layer_m) {
+    test.soil.slip_layer_m = slip_layer_m;
     const TaskProgress of_drive = [&](std::string_view /*digging*/, double share) {
       report_progress(progress, "fitting the drag depth", (drives + share) / kMaxDrives);
     };
@@ -73,8 +73,8 @@ SoilReport run_dig(DigArguments a) {
   std::vector<SoilLine> lines;
   TaskBar bar(false);
   if (a.fit_cm3 > 0.0) {
-    a.test.soil.drag_depth_m = fit_drag_depth(a.test, a.fit_cm3 * 1e-6, bar.progress());
-    lines.push_back({"fitted", "drag_depth_mm", a.test.soil.drag_depth_m * kMilli, "%.1f"});
+    a.test.soil.slip_layer_m = fit_slip_layer(a.test, a.fit_cm3 * 1e-6, bar.progress());
+    lines.push_back({"fitted", "slip_layer_mm", a.test.soil.slip_layer_m * kMilli, "%.1f"});
   }
   const bool particles = a.ground == "particles";
   const DigResult result =
@@ -168,7 +168,7 @@ void register_soil_dig_command(Command& soil, Program& program) {
   add_number(*command, "--beds", a->test.beds, "Number of particle beds whose heights are averaged",
              {1, 256});
   add_number(*command, "--fit-raised", a->fit_cm3,
-             "Fit --drag-depth to this raised volume [cm^3] (scm)", {0.0, 1e6});
+             "Fit --slip-layer to this raised volume [cm^3] (scm)", {0.0, 1e6});
   command->add_option("--charts", a->charts, "Output folder for a PNG of the height change")
       ->type_name("FOLDER");
 }

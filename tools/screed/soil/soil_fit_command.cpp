@@ -19,7 +19,7 @@ namespace screed {
 namespace {
 
 struct FitArguments {
-  std::string file;
+  std::vector<std::string> files;
   std::string cases;
   std::string preset = "viper";
   SoilOverrides overrides;
@@ -106,8 +106,17 @@ void print_fit(const SoilFit& fit, const SoilMeasurements& measured, const MeanE
     std::printf(", the others at spreads of %.2f to %.2f", fit.spreads[static_cast<size_t>(same)],
                 fit.spreads.back());
   std::printf("\n");
+  for (const MeasuredTransient& transient : measured.transients) {
+    std::printf("\n%-34s %14s %12s %8s\n", transient.name.c_str(), "slip path, mm", "extra h, mm",
+                "fitted");
+    const std::vector<double> extra = predicted_transient(transient, fit.soil, fit.rim);
+    for (size_t i = 0; i < extra.size(); ++i) {
+      std::printf("%-34s %14.1f %12.2f %8.2f\n", "", transient.places[i].slip_path_m * kMilli,
+                  transient.places[i].extra_sinkage_m * kMilli, extra[i] * kMilli);
+    }
+  }
   if (mean.wheels == 0) return;
-  std::printf("mean error: pull %.3f W, side force %.3f W, sinkage %.1f %%\n\n", mean.pull,
+  std::printf("\nmean error: pull %.3f W, side force %.3f W, sinkage %.1f %%\n\n", mean.pull,
               mean.side, 100.0 * mean.sinkage);
   std::printf("%-34s %8s %8s   %8s %8s   %8s %8s\n", "case", "pull, N", "fitted", "side, N",
               "fitted", "h, mm", "fitted");
@@ -125,13 +134,23 @@ void print_fit(const SoilFit& fit, const SoilMeasurements& measured, const MeanE
   }
 }
 
+void add_measurements(const SoilMeasurements& more, SoilMeasurements& all) {
+  const auto append = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  append(all.wheels, more.wheels);
+  append(all.transients, more.transients);
+  append(all.plates, more.plates);
+}
+
 int run_fit(const FitArguments& a) {
   SoilFitProblem problem;
   problem.soil = soil_preset(a.preset);
   a.overrides.apply_to(problem.soil);
   problem.rim = {tangent_of(a.rim_friction_deg), a.rim_adhesion_pa};
   problem.free = a.free;
-  problem.measured = read_soil_measurements(a.file, a.cases);
+  for (const std::string& file : a.files)
+    add_measurements(read_soil_measurements(file, a.cases), problem.measured);
   ProgressBar bar(std::cerr);
   const SoilFit fit = fit_soil(problem, [&](int evaluations) {
     // A fit takes some hundred evaluations; how many is not known before.
@@ -153,7 +172,9 @@ void register_soil_fit_command(Command& soil, Program& program) {
   const auto a = std::make_shared<FitArguments>();
   Command* command =
       soil.add_subcommand("fit", "Fit a soil's parameters to tests of wheels or plates");
-  command->add_option("FILE", a->file, "CSV of measurements (docs/soil.md has the columns)")
+  command
+      ->add_option("FILE", a->files,
+                   "CSV of measurements, or several (docs/soil.md has the columns)")
       ->required()
       ->type_name("");
   command

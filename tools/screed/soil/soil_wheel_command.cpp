@@ -5,9 +5,12 @@
 #include <limits>
 #include <memory>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/constants.h"
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/elementary.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/core/finite_number.h"
 #include "host_sim/soil_validation/soil_measurements.h"
 #include "host_sim/soil_validation/wheel_testbed.h"
 #include "tools/screed/cli/command.h"
@@ -28,6 +31,9 @@ struct WheelArguments : SoilArguments {
   std::string cases = "ding2011_smooth";
   std::vector<double> slip_angles_deg = {0.0};
   bool limit_only = false;
+  std::string schedule;
+  std::vector<double> rims_m_per_s;
+  std::string series;
   double rim_friction_deg = 90.0;
 };
 
@@ -80,8 +86,39 @@ MeasuredWheel computed_row(const MeasuredWheel& row, const WheelReaction& comput
   return out;
 }
 
+/// Wheels whose rim goes over to another speed, beside measurements.
+SoilReport run_transients(WheelArguments a, const std::vector<MeasuredTransient>& transients) {
+  constexpr double kInterval_s = 0.02;
+  const RollingWheel rim = a.test.wheel;
+  std::vector<SoilLine> lines;
+  std::vector<TransientComparison> comparisons;
+  ProgressBar bar(std::cerr);
+  for (const MeasuredTransient& measured : transients) {
+    bar.show_share(static_cast<double>(comparisons.size()) / static_cast<double>(transients.size()),
+                   "rolling a wheel");
+    a.test.wheel = measured.wheel;
+    a.test.wheel.friction = rim.friction;
+    a.test.wheel.adhesion_pa = rim.adhesion_pa;
+    const WheelSchedule schedule = measured.schedule();
+    const TransientComparison one = {measured, run_wheel(a.test, schedule, kInterval_s).samples};
+    const std::vector<double> extra = measured.extra_sinkage_m(one.screed);
+    for (size_t i = 0; i < extra.size(); ++i) {
+      lines.push_back(
+          {measured.name + text(", slip path %g mm", measured.places[i].slip_path_m * kMilli),
+           "extra_sinkage_mm", extra[i] * kMilli, "%.2f",
+           measured.places[i].extra_sinkage_m * kMilli, SoilLine::Error::kAbsolute});
+    }
+    comparisons.push_back(one);
+  }
+  bar.clear();
+  if (!a.charts.empty()) write_charts(a, {transient_chart(a.soil().name, comparisons)});
+  return {"wheel_transient", wheel_words(a), "measured", lines};
+}
+
 SoilReport run_measured(WheelArguments a) {
-  const std::vector<MeasuredWheel> rows = read_soil_measurements(a.measured, a.cases).wheels;
+  const SoilMeasurements measured = read_soil_measurements(a.measured, a.cases);
+  if (!measured.transients.empty()) return run_transients(a, measured.transients);
+  const std::vector<MeasuredWheel>& rows = measured.wheels;
   const NormalStress stress = a.test.options.normal_stress;
   const RollingWheel rim = a.test.wheel;
   std::vector<SoilLine> lines;
@@ -124,6 +161,103 @@ SoilReport run_measured(WheelArguments a) {
   bar.clear();
   if (!a.charts.empty()) write_charts(a, measured_charts(comparison));
   return {"wheel", wheel_words(a), "measured", lines};
+}
+
+void write_series(const std::string& file, const std::vector<WheelSample>& samples) {
+  std::string csv =
+      "time_s,travel_m,slip_path_m,side_path_m,sinkage_m,drawbar_pull_n,side_force_n\n";
+  for (const WheelSample& at : samples) {
+    csv += text("%.3f", at.time_s) + text(",%.6f", at.travel_m) + text(",%.6f", at.slip_path_m) +
+           text(",%.6f", at.side_path_m) + text(",%.6f", at.sinkage_m) +
+           text(",%.4f", at.drawbar_pull_n) + text(",%.4f\n", at.side_force_n);
+  }
+  write_file(file, csv);
+}
+
+/// A wheel or belt that moves as a schedule says.
+SoilReport run_scheduled(const WheelArguments& a) {
+  constexpr double kInterval_s = 0.05;
+  constexpr size_t kLines = 20;
+  const WheelSchedule schedule = read_wheel_schedule(a.schedule);
+  const std::vector<WheelSample> samples = run_wheel(a.test, schedule, kInterval_s).samples;
+  if (!a.series.empty()) write_series(a.series, samples);
+  if (!a.charts.empty()) write_charts(a, schedule_charts(a.soil().name, samples));
+  std::vector<SoilLine> lines;
+  const size_t last = samples.size() - 1;
+  const size_t parts = std::max<size_t>(1, std::min(kLines, last));
+  for (size_t line = 0; line <= parts; ++line) {
+    const WheelSample& at = samples[line * last / parts];
+    const std::string where =
+        text("%.2f s", at.time_s) + text(", slip path %.1f mm", at.slip_path_m * kMilli);
+    lines.push_back({where, "sinkage_mm", at.sinkage_m * kMilli, "%.3f"});
+    lines.push_back({where, "drawbar_pull_n", at.drawbar_pull_n, "%.3f"});
+    lines.push_back({where, "side_force_n", at.side_force_n, "%.3f"});
+  }
+  return {"wheel_schedule", wheel_words(a), "", lines};
+}
+
+struct SteadyWheel {
+  double sinkage_m = 0.0;
+  double drawbar_pull_n = 0.0;
+  double side_force_n = 0.0;
+};
+
+/// Means over the last fifth.
+SteadyWheel steady_state(const std::vector<WheelSample>& samples) {
+  SteadyWheel mean;
+  const size_t first = samples.size() - std::max<size_t>(1, samples.size() / 5);
+  const auto count = static_cast<double>(samples.size() - first);
+  for (size_t i = first; i < samples.size(); ++i) {
+    mean.sinkage_m += samples[i].sinkage_m / count;
+    mean.drawbar_pull_n += samples[i].drawbar_pull_n / count;
+    mean.side_force_n += samples[i].side_force_n / count;
+  }
+  return mean;
+}
+
+/// Wheels that roll without slip until their rims go over to other speeds.
+SoilReport run_steps_of_slip(const WheelArguments& a) {
+  constexpr double kInterval_s = 0.01;
+  constexpr double kTimeConstant_s = 0.13;  // of data/soil/slip_transients_cmu2022.csv
+  constexpr double kPaths_m[] = {0.0,  0.002, 0.004, 0.009, 0.015, 0.025,
+                                 0.04, 0.06,  0.1,   0.15,  0.23,  0.4};
+  std::vector<SoilLine> lines;
+  std::string csv =
+      "slip_angle_deg,rim_m_s,slip_path_m,steady,sinkage_m,drawbar_pull_n,side_force_n\n";
+  ProgressBar bar(std::cerr);
+  for (const double angle_deg : a.slip_angles_deg) {
+    for (const double rim : a.rims_m_per_s) {
+      bar.show_share(
+          static_cast<double>(lines.size()) /
+              (4.0 * static_cast<double>(a.slip_angles_deg.size() * a.rims_m_per_s.size())),
+          "rolling a wheel");
+      const WheelSchedule schedule = step_of_slip(a.test.speed_m_per_s, angle_deg * kDegree, rim,
+                                                  kTimeConstant_s, a.test.duration_s);
+      const std::vector<WheelSample> samples = run_wheel(a.test, schedule, kInterval_s).samples;
+      const std::string begin = text("%g,", angle_deg) + text("%g,", rim);
+      const auto add = [&](const std::string& where, const SteadyWheel& at) {
+        csv += begin + where + text(",%.5f", at.sinkage_m) + text(",%.3f", at.drawbar_pull_n) +
+               text(",%.3f\n", at.side_force_n);
+      };
+      size_t next = 0;
+      for (const WheelSample& at : samples) {
+        if (next == std::size(kPaths_m)) break;
+        if (portable::hypot(at.slip_path_m, at.side_path_m) < kPaths_m[next]) continue;
+        add(text("%g,0", kPaths_m[next]), {at.sinkage_m, at.drawbar_pull_n, at.side_force_n});
+        ++next;
+      }
+      const SteadyWheel steady = steady_state(samples);
+      add(",1", steady);
+      const std::string where = text("angle %g", angle_deg) + text(", rim %g mm/s", rim * kMilli);
+      lines.push_back({where, "start_sinkage_mm", samples.front().sinkage_m * kMilli, "%.2f"});
+      lines.push_back({where, "steady_sinkage_mm", steady.sinkage_m * kMilli, "%.2f"});
+      lines.push_back({where, "steady_pull_n", steady.drawbar_pull_n, "%.3f"});
+      lines.push_back({where, "steady_side_force_n", steady.side_force_n, "%.3f"});
+    }
+  }
+  bar.clear();
+  if (!a.series.empty()) write_file(a.series, csv);
+  return {"wheel_step", wheel_words(a), "", lines};
 }
 
 /// Lines of one pass of a wheel beside its limit.
@@ -202,6 +336,17 @@ SoilReport run_wheel_command(WheelArguments a) {
     }
     return run_measured(a);
   }
+  if (!a.schedule.empty()) return run_scheduled(a);
+  if (!a.rims_m_per_s.empty()) return run_steps_of_slip(a);
+  if (a.test.belt_m > 0.0 || a.test.lug_height_m > 0.0 || !a.series.empty()) {
+    throw InputError("wheel: --belt, --lug-height and --series go with --schedule or --rim");
+  }
+  for (const double angle : a.slip_angles_deg) {
+    if (std::abs(angle) > 80.0) {
+      throw InputError("wheel: --slip-angle " + shortest(angle) +
+                       "; allowed is -80 to 80, more with --rim");
+    }
+  }
   const bool several = a.slip_angles_deg.size() > 1;
   const auto runs = static_cast<double>(a.slip_angles_deg.size() * a.slips.size());
   int done = 0;
@@ -264,9 +409,32 @@ void register_soil_wheel_command(Command& soil, Program& program) {
   add_number(*command, "--slip-angle", a->slip_angles_deg,
              "Angle of travel to the left of the wheel's plane [deg]; several with commas between "
              "them",
-             {-80.0, 80.0});
+             {-90.0, 90.0});
   Option* limit_only = command->add_flag("--limit-only", a->limit_only,
                                          "Compute the limit alone, in an instant; roll no wheel");
+  Option* schedule =
+      command
+          ->add_option(
+              "--schedule", a->schedule,
+              "Move the wheel as a CSV file says: time_s, rim_m_s, travel_m_s, slip_angle_deg")
+          ->type_name("FILE");
+  schedule->excludes(limit_only);
+  add_number(
+      *command, "--rim", a->rims_m_per_s,
+      "Roll at --speed without slip until the rim goes over to this speed [m/s]; several with "
+      "commas between them",
+      {-10.0, 10.0})
+      ->excludes(limit_only)
+      ->excludes(schedule);
+  command
+      ->add_option("--series", a->series,
+                   "With --schedule or --rim: a CSV file for what the wheel does over time")
+      ->type_name("FILE");
+  add_number(*command, "--belt", a->test.belt_m,
+             "With --schedule or --rim: a belt round two wheels, so far apart, kept level [m]",
+             {0.0, 10.0});
+  add_number(*command, "--lug-height", a->test.lug_height_m,
+             "With --schedule or --rim: height of the surface's lugs [m]", {0.0, 0.1});
   add_number(*command, "--rim-friction", a->rim_friction_deg,
              "Angle of friction between rim and soil [deg]; 90: rough, soil shears on soil",
              {0.0, 90.0});

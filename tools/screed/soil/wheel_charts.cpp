@@ -170,4 +170,58 @@ std::vector<WheelChart> measured_charts(const WheelComparison& comparison) {
   return charts;
 }
 
+std::vector<WheelChart> schedule_charts(const std::string& subject,
+                                        const std::vector<WheelSample>& samples) {
+  struct OverTime {
+    const char* file;
+    const char* title;
+    const char* label;
+    double scale;
+    double WheelSample::*value;
+  };
+  constexpr OverTime kCharts[] = {
+      {"sinkage", "Sinkage of a wheel", "sinkage [mm]", 1e3, &WheelSample::sinkage_m},
+      {"pull", "Drawbar pull of a wheel", "drawbar pull [N]", 1.0, &WheelSample::drawbar_pull_n},
+      {"side_force", "Side force on a wheel", "side force, to the left [N]", 1.0,
+       &WheelSample::side_force_n}};
+  std::vector<WheelChart> charts;
+  for (const OverTime& one : kCharts) {
+    Chart chart;
+    chart.title = std::string(one.title) + " on a schedule: " + subject;
+    chart.x_label = "time [s]";
+    chart.y_label = one.label;
+    ChartSeries series{"Screed", {}, false};
+    for (const WheelSample& at : samples)
+      series.points.push_back({at.time_s, at.*one.value * one.scale});
+    chart.series.push_back(series);
+    charts.push_back({std::string("soil_schedule_") + one.file + ".svg", chart});
+  }
+  return charts;
+}
+
+WheelChart transient_chart(const std::string& subject,
+                           const std::vector<TransientComparison>& transients) {
+  Chart chart;
+  chart.title = "Sinkage by slip, measured and simulated: " + subject;
+  chart.x_label = "slip path [mm]";
+  chart.y_label = "sinkage beyond that without slip [mm]";
+  for (const TransientComparison& one : transients) {
+    const std::string rim = text(", rim %g mm/s", one.measured.rim_m_per_s * kMilli);
+    const double last = std::abs(one.measured.places.back().slip_path_m);
+    ChartSeries series{"Screed" + rim, {}, false};
+    for (const WheelSample& at : one.screed) {
+      if (std::abs(at.slip_path_m) > last) break;
+      series.points.push_back(
+          {at.slip_path_m * kMilli, (at.sinkage_m - one.screed.front().sinkage_m) * kMilli});
+    }
+    chart.series.push_back(series);
+    ChartSeries points{"measured" + rim, {}, true, false};
+    for (const MeasuredTransient::Place& place : one.measured.places)
+      points.points.push_back(
+          {place.slip_path_m * kMilli, place.extra_sinkage_m * kMilli, place.error_m * kMilli});
+    chart.series.push_back(points);
+  }
+  return {"soil_transient.svg", chart};
+}
+
 }  // namespace screed

@@ -52,4 +52,19 @@ struct WheelComparison {
 /// are black.
 std::vector<WheelChart> measured_charts(const WheelComparison& comparison);
 
+/// soil_schedule_sinkage.svg, _pull.svg and _side_force.svg over time, of what moves as a schedule
+/// says.
+std::vector<WheelChart> schedule_charts(const std::string& subject,
+                                        const std::vector<WheelSample>& samples);
+
+/// What a wheel sinks as its rim goes over to another speed, beside what was measured.
+struct TransientComparison {
+  MeasuredTransient measured;
+  std::vector<WheelSample> screed;
+};
+
+/// soil_transient.svg: over the slip path.
+WheelChart transient_chart(const std::string& subject,
+                           const std::vector<TransientComparison>& transients);
+
 }  // namespace screed

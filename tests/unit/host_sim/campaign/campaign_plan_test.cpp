@@ -229,9 +229,9 @@ TEST_F(Campaign, ALevelWithANameSetsSeveralKeysAndALaterFactorHolds) {
   const CampaignPlan campaign = plan(
       "seeds = 1, 2\n"
       "[grid]\nbed = flat, steep\nentry = walk, walk_mcu\n"
-      "[bed flat]\nmap.size = 2\nsoil.drag_depth = 0.001\n"
+      "[bed flat]\nmap.size = 2\nsoil.slip_layer = 0.001\n"
       "[bed steep]\nmap.ramp = 10\n"
-      "[entry walk]\nexperiment.algorithm = random_walk\nsoil.drag_depth = 0\n"
+      "[entry walk]\nexperiment.algorithm = random_walk\nsoil.slip_layer = 0\n"
       "[entry walk_mcu]\nexperiment.algorithm = random_walk\nworld.hal = mcu\n");
   ASSERT_EQ(
       campaign.cells,
@@ -239,10 +239,10 @@ TEST_F(Campaign, ALevelWithANameSetsSeveralKeysAndALaterFactorHolds) {
   const CampaignRun flat_walk = resolve_run(campaign, 0);
   EXPECT_EQ(flat_walk.experiment.map.size_m, 2.0);
   EXPECT_EQ(flat_walk.experiment.experiment.algorithm, "random_walk");
-  EXPECT_EQ(flat_walk.experiment.soil.overrides.drag_depth_m, 0.0);
+  EXPECT_EQ(flat_walk.experiment.soil.overrides.slip_layer_m, 0.0);
   EXPECT_EQ(flat_walk.world.hal, "native");
   const CampaignRun flat_mcu = resolve_run(campaign, 2);
-  EXPECT_EQ(flat_mcu.experiment.soil.overrides.drag_depth_m, 0.001);
+  EXPECT_EQ(flat_mcu.experiment.soil.overrides.slip_layer_m, 0.001);
   EXPECT_EQ(flat_mcu.world.hal, "mcu");
   EXPECT_EQ(resolve_run(campaign, 4).experiment.map.ramp_deg, 10.0);
 

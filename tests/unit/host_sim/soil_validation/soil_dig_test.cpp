@@ -16,7 +16,7 @@ DigResult dig(Manoeuvre manoeuvre, double cell_m, double spin_s = 10.0, bool dra
   DigTest test;
   test.manoeuvre = manoeuvre;
   test.soil = soil_preset("gravel");
-  if (!dragging) test.soil.drag_depth_m = 0.0;
+  if (!dragging) test.soil.slip_layer_m = 0.0;
   test.cell_m = cell_m;
   test.duration_s = manoeuvre == Manoeuvre::kSpin ? spin_s : 10.0;
   return dig_soil(test);

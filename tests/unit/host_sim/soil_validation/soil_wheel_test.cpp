@@ -29,11 +29,11 @@ WheelTest wheel_on(const char* soil, double slip, NormalStress stress, double ce
   return test;
 }
 
-SoilParameters viper_with(double front_angle, double front_angle_driven, double exit_angle) {
+SoilParameters viper_with(double front_angle, double exit_angle, double slip_bearing = 1.0) {
   SoilParameters soil = soil_preset("viper");
   soil.front_angle = front_angle;
-  soil.front_angle_driven = front_angle_driven;
   soil.exit_angle = exit_angle;
+  soil.slip_bearing = slip_bearing;
   return soil;
 }
 
@@ -48,7 +48,7 @@ TEST(SoilWheelLimitTest, AgreesWithFiguresComputedElsewhere) {
   } kKnown[] = {{0.0, 7.3324, -0.53515, 0.007733},
                 {0.2, 7.2396, -0.22222, 0.016762},
                 {0.4, 7.1676, 0.00738, 0.023383}};
-  SoilParameters soil = viper_with(0.0, 0.0, 0.0);
+  SoilParameters soil = viper_with(0.0, 0.0);
   soil.elastic_pa_per_m = 1e12;
   for (const auto& known : kKnown) {
     RollingWheel wheel;
@@ -64,11 +64,11 @@ TEST(SoilWheelLimitTest, AgreesWithFiguresComputedElsewhere) {
 TEST(SoilWheelLimitTest, AStressShiftedAheadCarriesTheSameLoadDeeper) {
   RollingWheel wheel;
   wheel.slip = 0.0;
-  const WheelReaction even = wheel_limit(wheel, viper_with(0.0, 0.0, 0.0), NormalStress::kRadial);
-  const WheelReaction ahead = wheel_limit(wheel, viper_with(0.4, 0.0, 0.0), NormalStress::kRadial);
+  const WheelReaction even = wheel_limit(wheel, viper_with(0.0, 0.0), NormalStress::kRadial);
+  const WheelReaction ahead = wheel_limit(wheel, viper_with(0.4, 0.0), NormalStress::kRadial);
   EXPECT_GT(ahead.sinkage_m, even.sinkage_m);
   EXPECT_LT(ahead.drawbar_pull_n, even.drawbar_pull_n);
-  const WheelReaction behind = wheel_limit(wheel, viper_with(0.0, 0.0, 0.5), NormalStress::kRadial);
+  const WheelReaction behind = wheel_limit(wheel, viper_with(0.0, 0.5), NormalStress::kRadial);
   EXPECT_LT(behind.sinkage_m, even.sinkage_m);
   EXPECT_NEAR(behind.rut_m, 0.75 * behind.sinkage_m, 1e-12);
   EXPECT_NEAR(behind.contact_rear_m,
@@ -94,7 +94,7 @@ TEST(SoilWheelLimitTest, ASmoothRimHoldsByItsOwnFriction) {
 TEST(SoilWheelLimitTest, ALockedWheelIsHeldByFrictionAndByWhatItPushes) {
   RollingWheel wheel;
   wheel.slip = -1.0;
-  SoilParameters soil = viper_with(0.0, 0.0, 0.0);
+  SoilParameters soil = viper_with(0.0, 0.0);
   const WheelReaction dragged = wheel_limit(wheel, soil, NormalStress::kVertical);
   const double friction = std::tan(30.0 * 0.017453292519943295);
   EXPECT_NEAR(dragged.drawbar_pull_n, -3.0 * friction, 0.01);
@@ -127,7 +127,7 @@ TEST(SoilWheelLimitTest, ASlipAngleMakesASideForce) {
 // A wheel that is nearly rigid soil's own: E alone, closed form. p = E (depth): the parabola's
 // area gives load = 4/3 E w sqrt(2 r) z^1.5 for depths much smaller than the radius.
 TEST(SoilWheelLimitTest, ElasticSoilInClosedForm) {
-  SoilParameters soil = viper_with(0.0, 0.0, 0.0);
+  SoilParameters soil = viper_with(0.0, 0.0);
   soil.k_phi = 1e12;  // never reached
   soil.exponent = 1.0;
   soil.friction_deg = 0.0;
@@ -152,16 +152,19 @@ TEST(SoilWheelLimitTest, RefusesALoadThatSinksToTheAxle) {
 }
 
 // Required: sinkage 2 % at 5 mm, 1 % at 2.5 mm; drawbar pull 0.005 of the load. With the greatest
-// stress below the axle, ahead of it, and with ground that comes up behind the wheel.
+// stress below the axle, ahead of it, with ground that comes up behind the wheel, and with soil
+// that bears less where the wheel slips.
 TEST(SoilWheelTest, SinkageAndDrawbarPullAreThoseOfTheLimit) {
-  const SoilParameters soils[] = {soil_preset("viper"), viper_with(0.18, 0.32, 0.0),
-                                  viper_with(0.3, 0.2, 0.5)};
+  const SoilParameters soils[] = {soil_preset("viper"), viper_with(0.18, 0.0), viper_with(0.3, 0.5),
+                                  viper_with(0.3, 0.5, 0.3)};
   for (const double cell : {0.005, 0.0025}) {
     for (const NormalStress stress : kBoth) {
       for (const double slip : kSlips) {
         for (const SoilParameters& soil : soils) {
           if (testing::kSanitized && slip != 0.2) continue;
-          const double sinkage_error = cell == 0.005 ? 0.02 : 0.01;
+          // Where the wheel slips the soil's share changes fast along the contact.
+          const double wide = soil.slip_bearing < 1.0 ? 2.0 : 1.0;
+          const double sinkage_error = wide * (cell == 0.005 ? 0.02 : 0.01);
           WheelTest test = wheel_on("viper", slip, stress, cell);
           test.soil = soil;
           const WheelReaction limit = wheel_limit(test.wheel, test.soil, stress);
@@ -169,13 +172,15 @@ TEST(SoilWheelTest, SinkageAndDrawbarPullAreThoseOfTheLimit) {
           const WheelPass& pass = result.passes[0];
           const std::string where = std::string(name(stress)) + ", slip " + std::to_string(slip) +
                                     ", cell " + std::to_string(cell) + ", c1 " +
-                                    std::to_string(soil.front_angle);
+                                    std::to_string(soil.front_angle) + ", slip bearing " +
+                                    std::to_string(soil.slip_bearing);
           EXPECT_NEAR(pass.sinkage_m / limit.sinkage_m, 1.0, sinkage_error) << where;
-          EXPECT_NEAR(pass.drawbar_pull_n, limit.drawbar_pull_n, 0.005 * test.wheel.load_n)
+          EXPECT_NEAR(pass.drawbar_pull_n, limit.drawbar_pull_n, wide * 0.005 * test.wheel.load_n)
               << where;
-          EXPECT_NEAR(pass.torque_nm, limit.torque_nm, 0.01 * test.wheel.load_n * 0.03) << where;
+          EXPECT_NEAR(pass.torque_nm, limit.torque_nm, wide * 0.01 * test.wheel.load_n * 0.03)
+              << where;
           EXPECT_NEAR(pass.load_n, test.wheel.load_n, 0.01 * test.wheel.load_n) << where;
-          EXPECT_NEAR(pass.rut_m / limit.rut_m, 1.0, 0.01) << where;
+          EXPECT_NEAR(pass.rut_m / limit.rut_m, 1.0, wide * 0.01) << where;
           EXPECT_EQ(result.balance.error(), 0);
         }
       }
@@ -252,7 +257,7 @@ TEST(SoilWheelTest, FurtherPassesAreThoseOfTheLimit) {
   for (const NormalStress stress : kBoth) {
     for (const double front_angle : {0.0, 0.3}) {
       WheelTest test = wheel_on("viper", 0.2, stress, 0.005);
-      test.soil = viper_with(front_angle, 0.0, 0.0);
+      test.soil = viper_with(front_angle, 0.0);
       test.passes = 3;
       const std::vector<WheelPass> passes = run_wheel(test).passes;
       for (const WheelPass& pass : passes) {

@@ -30,8 +30,8 @@ struct Trace {
 Trace drive(InstructionSet set) {
   SoilParameters soil = soil_preset("cmu_2022");  // with all that a soil can have
   soil.damping_pa_s_per_m = 300.0;
-  soil.drag_depth_m = 0.002;
-  soil.drag_share = 0.7;
+  soil.slip_layer_m = 0.002;
+  soil.slip_carry = 0.7;
   soil.compaction = 0.2;
   SoilOptions options;
   options.instructions = set;

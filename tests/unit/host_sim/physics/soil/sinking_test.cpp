@@ -51,6 +51,8 @@ int solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& 
     block.elastic_slope[lane] = springs[i].elastic_slope;
     block.virgin[lane] = springs[i].virgin;
     block.virgin_slope[lane] = springs[i].virgin_slope;
+    block.flowing[lane] = springs[i].virgin;
+    block.flowing_slope[lane] = springs[i].virgin_slope;
     block.x[lane] = springs[i].x;
     block.y[lane] = springs[i].y;
     block.damper[lane] = springs[i].damper;

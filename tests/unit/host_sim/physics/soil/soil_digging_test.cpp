@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/physics/soil/soil_bed.h"
 
 namespace screed {
@@ -21,7 +22,8 @@ constexpr double kUnit_m3 = kHeightUnit_m * kSpacing_m * kSpacing_m;
 
 SoilParameters dragged_soil() {
   SoilParameters soil = soil_preset("lete_sand");
-  soil.drag_depth_m = 0.0004;
+  soil.slip_layer_m = 0.0004;
+  soil.slip_carry = 0.0;
   soil.compaction = 0.0;
   soil.repose_deg = 60.0;       // what is heaped up stays where it is
   soil.elastic_pa_per_m = 1e5;  // so soft that the plate goes on touching what it digs away
@@ -59,7 +61,7 @@ struct Dug {
 
 /// Presses the plate, lets all shear be mobilised, then lets it slip for `seconds`.
 Dug dig(const Plate& plate, const SoilParameters& soil, double seconds, bool bulldozing = true,
-        const std::function<double(double, double)>& ground = nullptr) {
+        const std::function<double(double, double)>& ground = nullptr, double lug_height_m = 0.0) {
   const HeightField surface =
       HeightField::from_function(kNodes, kNodes, kSpacing_m, false,
                                  [&](double x, double y) { return ground ? ground(x, y) : 0.0; });
@@ -77,6 +79,7 @@ Dug dig(const Plate& plate, const SoilParameters& soil, double seconds, bool bul
   footprint.set_pose(pose);
   FootprintMotion motion;
   motion.mass_kg = std::numeric_limits<double>::infinity();
+  motion.lug_height_m = lug_height_m;
   ContactMemory memory;
   const auto step = [&] {
     const TerrainReaction reaction = bed.press(footprint, motion, kStep_s, memory);
@@ -100,13 +103,13 @@ TEST(SoilDigging, TakesTheLayerTimesTheSlipTimesTheWidth) {
   const SoilParameters soil = dragged_soil();
   for (const Plate& plate : {Plate{0.1, 0.05}, Plate{0.05, 0.1}, Plate{0.1, 0.05, 90.0}}) {
     const Dug dug = dig(plate, soil, 0.2);
-    const double expected = soil.drag_depth_m * kSlip_m_per_s * 0.2 * plate.width_m;
+    const double expected = soil.slip_layer_m * kSlip_m_per_s * 0.2 * plate.width_m;
     EXPECT_NEAR(dug.volume_m3(), expected, 0.02 * expected) << plate.length_m << plate.yaw_deg;
     EXPECT_EQ(dug.balance.error(), 0);
   }
   // At any yaw the cells at the edges count by their share.
   const Dug turned = dig({0.1, 0.05, 30.0}, soil, 0.2);
-  const double expected = soil.drag_depth_m * kSlip_m_per_s * 0.2 * 0.05;
+  const double expected = soil.slip_layer_m * kSlip_m_per_s * 0.2 * 0.05;
   EXPECT_NEAR(turned.volume_m3(), expected, 0.1 * expected);
 }
 
@@ -114,9 +117,9 @@ TEST(SoilDigging, IsAsMuchAtHalfTheSlipAndTwiceTheTimeAndGrowsWithTheLayer) {
   SoilParameters soil = dragged_soil();
   const double once = dig({}, soil, 0.1).volume_m3();
   EXPECT_NEAR(dig({}, soil, 0.2).volume_m3(), 2.0 * once, 0.02 * once);
-  soil.drag_depth_m *= 2.0;
+  soil.slip_layer_m *= 2.0;
   EXPECT_NEAR(dig({}, soil, 0.1).volume_m3(), 2.0 * once, 0.02 * once);
-  soil.drag_depth_m = 0.0;
+  soil.slip_layer_m = 0.0;
   EXPECT_EQ(dig({}, soil, 0.1).volume_m3(), 0.0);
 }
 
@@ -144,7 +147,7 @@ TEST(SoilDigging, HeapsItUpAroundThePlateAsFarAsThePlateIsWide) {
 TEST(SoilDigging, ADragShareCarriesTheLayerTheWayTheSurfaceSlips) {
   SoilParameters soil = dragged_soil();
   for (const double share : {0.0, 0.3, 0.6}) {
-    soil.drag_share = share;
+    soil.slip_carry = share;
     for (const double yaw_deg : {0.0, 90.0, 180.0}) {
       const Dug dug = dig({0.1, 0.05, yaw_deg}, soil, 0.3);
       double east = 0.0;
@@ -153,13 +156,68 @@ TEST(SoilDigging, ADragShareCarriesTheLayerTheWayTheSurfaceSlips) {
         east -= lower * x;
         north -= lower * y;
       });
-      const double expected = soil.drag_depth_m * share * kSlip_m_per_s * 0.3 * 0.1 * 0.05;
+      const double expected = soil.slip_layer_m * share * kSlip_m_per_s * 0.3 * 0.1 * 0.05;
       const double yaw = yaw_deg * std::numbers::pi / 180.0;
-      const double tolerance = 0.02 * soil.drag_depth_m * kSlip_m_per_s * 0.3 * 0.1 * 0.05;
+      const double tolerance = 0.02 * soil.slip_layer_m * kSlip_m_per_s * 0.3 * 0.1 * 0.05;
       EXPECT_NEAR(east, expected * std::cos(yaw), tolerance) << share << " " << yaw_deg;
       EXPECT_NEAR(north, expected * std::sin(yaw), tolerance) << share << " " << yaw_deg;
       EXPECT_EQ(dug.balance.error(), 0);
     }
+  }
+}
+
+TEST(SoilDigging, LugsTakeAlongWhatTheyHoldBetweenThem) {
+  SoilParameters smooth = dragged_soil();
+  smooth.slip_layer_m = 0.0;
+  const double once = dig({}, dragged_soil(), 0.1).volume_m3();
+  EXPECT_NEAR(dig({}, smooth, 0.1, true, nullptr, 0.0004).volume_m3(), once, 1e-6 * once);
+  EXPECT_NEAR(dig({}, dragged_soil(), 0.1, true, nullptr, 0.0003).volume_m3(), once, 1e-6 * once)
+      << "the layer is not booked twice";
+}
+
+// A plate of 2 kg that slips without going anywhere sinks, and what it presses down comes up behind
+// it: volume times way over volume is slip_carry times its length.
+TEST(SoilDigging, WhatSinksBySlipGoesAlongWithIt) {
+  for (const double share : {0.0, 0.66}) {
+    SoilParameters soil = soil_preset("cmu_2022");
+    soil.slip_carry = share;
+    soil.repose_deg = 60.0;
+    SoilOptions options;
+    options.avalanches = false;
+    SoilBed bed(HeightField(kNodes, kNodes, kSpacing_m, false), soil, options);
+    Footprint plate = Footprint::box({0.1, 0.05, kThickness_m});
+    ContactMemory memory;
+    FootprintMotion motion;
+    motion.mass_kg = 2.0;
+    double z = 0.5 * kThickness_m;
+    const auto run = [&](int steps) {
+      for (int i = 0; i < steps; ++i) {
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+        pose.translation().z() = z;
+        plate.set_pose(pose);
+        const TerrainReaction reaction = bed.press(plate, motion, kStep_s, memory);
+        bed.end_step();
+        motion.velocity.z() += kStep_s * (reaction.force.z() / motion.mass_kg - kGravity_m_per_s2);
+        z += kStep_s * motion.velocity.z();
+      }
+    };
+    run(400);
+    const HeightField before = bed.surface();
+    motion.surface_speed = kSlip_m_per_s;  // its lower side goes backward
+    run(400);
+    double raised = 0.0;
+    double moment = 0.0;
+    for (int iy = 0; iy < kNodes; ++iy) {
+      for (int ix = 0; ix < kNodes; ++ix) {
+        const auto rise = static_cast<double>(bed.surface().node(ix, iy) - before.node(ix, iy));
+        raised += std::max(0.0, rise);
+        moment -= rise * before.node_x(ix);
+      }
+    }
+    EXPECT_GT(raised * kUnit_m3, 0.2e-6);
+    EXPECT_NEAR(moment / raised, share * 0.1, 0.12 * 0.1) << share;
+    EXPECT_EQ(bed.balance().error(), 0);
+    EXPECT_GE(bed.balance().in_transit, 0);
   }
 }
 
@@ -172,7 +230,7 @@ TEST(SoilDigging, ThePatchIsWhatThePlateTouches) {
     EXPECT_NEAR(dug.area_m2, 0.5 * 0.01, 0.1 * 0.01);
     // The touched half is 5 cm by 10 cm: slip along it moves as wide a layer as it is across.
     const double width = along ? 0.1 : 0.05;
-    const double expected = dragged_soil().drag_depth_m * kSlip_m_per_s * 0.3 * width;
+    const double expected = dragged_soil().slip_layer_m * kSlip_m_per_s * 0.3 * width;
     EXPECT_NEAR(dug.volume_m3(), expected, 0.12 * expected) << along;
     // It lies around the touched half: the heap's end on the touched side is 2.5 + 2.5 + 5 cm off.
     double least = 0.0;
@@ -190,7 +248,7 @@ TEST(SoilDigging, ThePatchIsWhatThePlateTouches) {
 TEST(SoilDigging, WhereNothingIsPushedAsideItIsGone) {
   const SoilParameters soil = dragged_soil();
   const Dug dug = dig({}, soil, 0.2, false);
-  const double expected = soil.drag_depth_m * kSlip_m_per_s * 0.2 * 0.05;
+  const double expected = soil.slip_layer_m * kSlip_m_per_s * 0.2 * 0.05;
   EXPECT_NEAR(dug.volume_m3(), expected, 0.02 * expected);
   EXPECT_NEAR(dug.compacted_m3, dug.volume_m3(), 60.0 * kUnit_m3);
   double heaped = 0.0;

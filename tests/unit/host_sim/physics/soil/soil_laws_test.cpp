@@ -140,14 +140,13 @@ TEST(NameList, IsReadByPeople) {
 TEST(WheelStressTest, PointsBehindTheGreatestStressBearAsThoseAhead) {
   SoilParameters soil;
   soil.front_angle = 0.3;
-  soil.front_angle_driven = 0.2;
   soil.front_angle_braked = 0.4;
   soil.exit_angle = 0.5;
   constexpr double kRadius = 0.05;
   for (const double slip : {-0.5, 0.0, 0.6}) {
     for (const double entry : {0.3, 0.9, 1.4}) {
       const WheelStress stress(soil, kRadius, entry, slip, 1.0);
-      const double middle = (0.3 + (slip >= 0.0 ? 0.2 : -0.4) * slip) * entry;
+      const double middle = (0.3 + 0.4 * std::max(0.0, -slip)) * entry;
       const double exit = -0.5 * entry;
       ASSERT_TRUE(stress.shaped());
       EXPECT_DOUBLE_EQ(stress.exit_rad(), exit);
@@ -174,6 +173,15 @@ TEST(WheelStressTest, AWheelThatIsSetDownBearsEvenly) {
 }
 
 // At 30 degrees X = 30, cot X = tan(X + phi) = sqrt(3): D1 = D2 = 2 sqrt(3).
+TEST(SlipBearingTest, FallsFromAllToItsShareWithTheRatioOfBothSpeeds) {
+  EXPECT_DOUBLE_EQ(bearing_under_slip(0.2, 0.01, 0.0), 1.0) << "nothing slides";
+  EXPECT_DOUBLE_EQ(bearing_under_slip(0.2, 0.0, 0.01), 0.2) << "nothing goes in";
+  EXPECT_DOUBLE_EQ(bearing_under_slip(0.2, 0.005, 0.01), 0.6);
+  EXPECT_DOUBLE_EQ(bearing_under_slip(0.2, -0.005, 0.01), 0.6) << "nor out";
+  EXPECT_DOUBLE_EQ(bearing_under_slip(0.2, 0.02, 0.01), 1.0);
+  EXPECT_DOUBLE_EQ(slip_flow(0.25, 0.1), 1.45 * 0.25 * 0.1);
+}
+
 TEST(PassivePressureTest, AtThirtyDegreesIsTwelveHalvesOfTheWeight) {
   SoilParameters soil;
   soil.friction_deg = 30.0;

@@ -218,7 +218,7 @@ TEST(SoilBedOptions, CompactionTakesItsShareOfWhatSinks) {
   for (const double compaction : {0.0, 0.25, 1.0}) {
     SoilParameters soil = soil_preset("lete_sand");
     soil.compaction = compaction;
-    soil.drag_depth_m = 0.0;
+    soil.slip_layer_m = 0.0;
     SoilBed bed(HeightField(61, 61, 0.005, true), soil, {});
     Footprint plate = Footprint::box({0.1, 0.1, 0.02});
     FootprintMotion motion;

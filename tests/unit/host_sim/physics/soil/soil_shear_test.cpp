@@ -197,35 +197,5 @@ TEST(SoilShearTest, AWheelThatSlipsIsDrawnForwardFromTheFirstStepOn) {
   }
 }
 
-// Soil below a wheel of radius r has felt slip s as far as it has been sheared: s (1 - (1 - v dt /
-// r)^n) after n steps, v the faster of rim and axle, whichever way they go and whichever is the
-// faster.
-TEST(SoilShearTest, SlipIsFeltOverTheLengthOfTheContact) {
-  constexpr double kRadius_m = 0.03;
-  constexpr double kFast_m_per_s = 0.2;
-  constexpr double kSlow_m_per_s = 0.05;
-  for (const double way : {1.0, -1.0}) {
-    for (const bool driven : {true, false}) {
-      SoilBed bed(HeightField(61, 61, 0.005, false), soil_preset("viper"));
-      Footprint wheel = Footprint::wheel(kRadius_m, 0.025);
-      ContactMemory memory;
-      FootprintMotion motion;
-      motion.mass_kg = std::numeric_limits<double>::infinity();
-      motion.velocity.x() = way * (driven ? kSlow_m_per_s : kFast_m_per_s);
-      motion.surface_speed = way * (driven ? kFast_m_per_s : kSlow_m_per_s);
-      motion.slip = driven ? 0.75 : -0.75;
-      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-      for (int i = 1; i <= 200; ++i) {
-        pose.translation() << motion.velocity.x() * i * kStep_s, 0.0, 0.027;
-        wheel.set_pose(pose);
-        bed.press(wheel, motion, kStep_s, memory);
-        bed.end_step();
-        const double felt = 1.0 - std::pow(1.0 - kFast_m_per_s * kStep_s / kRadius_m, i);
-        ASSERT_NEAR(memory.slip, motion.slip * felt, 1e-9) << way << " " << driven << " " << i;
-      }
-    }
-  }
-}
-
 }  // namespace
 }  // namespace screed

@@ -54,7 +54,8 @@ TEST(SoilOptions, HelpSaysSymbolUnitAndRange) {
   EXPECT_EQ(words("--elastic").help, "Stiffness of unloading E [Pa/m]");
   EXPECT_EQ(words("--k-phi").help,
             "Bekker's frictional modulus [N/m^(n+2)]; left out: the preset's");
-  EXPECT_EQ(words("--slip-sinkage").help, "Growth of n with slip");
+  EXPECT_EQ(words("--slip-bearing").help,
+            "Share of its bearing that soil keeps below a surface that slides over it; 1: all");
 }
 
 }  // namespace
