@@ -45,7 +45,8 @@ ASAN_COMMANDS := $(addprefix tools/screed/,link/attitude_command.cpp link/decode
   link/plot_command.cpp sim/replay_command.cpp cli/interrupt.cpp cli/number_option.cpp cli/progress_bar.cpp)
 ASAN_LEFT_OUT := $(addprefix nn/,training/% terrain/% surrogate/% slip/% data/%) \
   $(addprefix host_sim/,search/% benchmark/% campaign/% \
-  soil_validation/soil_fit.cpp soil_validation/wheel_%.cpp soil_validation/plate_press.cpp)
+  soil_validation/soil_fit.cpp soil_validation/wheel_limit.cpp soil_validation/wheel_testbed.cpp \
+  soil_validation/plate_press.cpp)
 ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(COMMAND_LINE_SOURCES) \
   $(filter-out tools/% $(ASAN_LEFT_OUT),$(LIBRARY_SOURCES))
 HOT_SOURCES := $(filter-out $(COLD_SOURCES),$(HOST_SOURCES))
