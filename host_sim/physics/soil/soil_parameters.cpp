@@ -48,7 +48,7 @@ SoilParameters soil(const char* name, double k_phi, double k_c, double n, double
   return s;
 }
 
-/// As of gravel: nobody has measured it on sand.
+/// Of gravel, fitted; assumed of sands, where nobody has measured it.
 constexpr double kCarry = 0.66;
 
 /// The simulant of Ding et al., 2011. Published: k_phi, k_c, c, phi. E as for the other sands. c1
@@ -84,7 +84,7 @@ SoilParameters gravel() {
   s.compaction = 0.37;
   s.compaction_depth_m = 0.003;
   s.slip_layer_m = 0.002;
-  s.slip_carry = 0.66;
+  s.slip_carry = kCarry;
   return s;
 }
 

@@ -23,7 +23,6 @@ constexpr double kUnit_m3 = kHeightUnit_m * kSpacing_m * kSpacing_m;
 SoilParameters dragged_soil() {
   SoilParameters soil = soil_preset("lete_sand");
   soil.slip_layer_m = 0.0004;
-  soil.slip_carry = 0.0;
   soil.compaction = 0.0;
   soil.repose_deg = 60.0;       // what is heaped up stays where it is
   soil.elastic_pa_per_m = 1e5;  // so soft that the plate goes on touching what it digs away
