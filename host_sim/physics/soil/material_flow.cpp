@@ -243,8 +243,9 @@ void MaterialFlow::find_ring(size_t begin, size_t end) {
   }
 }
 
-/// Leaves out what lies behind the footprint, unless nothing else is there.
-void MaterialFlow::drop_rut(const ActiveFootprint& footprint, size_t end) {
+/// Leaves out what lies behind the footprint, where its rut is, and what lies ahead, which it would
+/// only press again; if nothing else is there, what lies behind; if nothing is left, nothing.
+void MaterialFlow::drop_path(const ActiveFootprint& footprint, size_t end) {
   const Eigen::Vector2d& velocity = footprint.patch.velocity;
   const double speed = std::sqrt(velocity.x() * velocity.x() + velocity.y() * velocity.y());
   if (speed <= kStanding_m_per_s) return;
@@ -253,11 +254,22 @@ void MaterialFlow::drop_rut(const ActiveFootprint& footprint, size_t end) {
     return place.ix * direction.x() + place.iy * direction.y();
   };
   double rear = std::numeric_limits<double>::infinity();
-  for (size_t i = footprint.begin; i < end; ++i) rear = std::min(rear, ahead(covered_list_[i]));
+  double front = -rear;
+  for (size_t i = footprint.begin; i < end; ++i) {
+    rear = std::min(rear, ahead(covered_list_[i]));
+    front = std::max(front, ahead(covered_list_[i]));
+  }
   constexpr double kRounding = 1e-6;
-  const auto behind = [&](const RingNode& node) { return ahead(node.place) < rear - kRounding; };
-  if (std::all_of(ring_.begin(), ring_.end(), behind)) return;
-  ring_.erase(std::remove_if(ring_.begin(), ring_.end(), behind), ring_.end());
+  for (const bool ahead_too : {true, false}) {
+    const auto on_path = [&](const RingNode& node) {
+      const double here = ahead(node.place);
+      return here < rear - kRounding || (ahead_too && here > front + kRounding);
+    };
+    const auto end_kept = std::remove_if(ring_.begin(), ring_.end(), on_path);
+    if (end_kept == ring_.begin()) continue;
+    ring_.erase(end_kept, ring_.end());
+    return;
+  }
 }
 
 /// Each node's share of what the footprint lays down. By slices of a spacing along the footprint:
@@ -321,7 +333,7 @@ void MaterialFlow::weigh_ring(const ActiveFootprint& footprint, size_t end_press
 bool MaterialFlow::spread(const ActiveFootprint& footprint, size_t end, size_t end_pressed) {
   find_ring(footprint.begin, end);
   if (ring_.empty()) return false;
-  drop_rut(footprint, end);
+  drop_path(footprint, end);
   weigh_ring(footprint, end_pressed);
   // In whole units, and over many steps no place gets more than its share: the sums of shares are
   // rounded down from a threshold, another one each step. Of equal shares each gets one unit more

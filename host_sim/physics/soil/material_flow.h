@@ -76,8 +76,8 @@ class MaterialFlow {
     return {volume_before_, grid_.surface().height_sum(), compacted_, in_transit_};
   }
   /// Deposits what is in transit on the free neighbours of each footprint's nodes, most of it
-  /// beside the place where it was pressed down (PressedPatch::reach); those behind the footprint
-  /// are left out: there lies the rut. Keeps it in transit when there are none.
+  /// beside the place where it was pressed down (PressedPatch::reach); those behind and ahead of a
+  /// footprint that moves are left out. Keeps it in transit when there are none.
   void deposit();
 
   /// The footprint whose dig() comes next slips over this node; weights are relative.
@@ -144,7 +144,7 @@ class MaterialFlow {
     int64_t units;
   };
   void find_ring(size_t begin, size_t end);
-  void drop_rut(const ActiveFootprint& footprint, size_t end);
+  void drop_path(const ActiveFootprint& footprint, size_t end);
   void weigh_ring(const ActiveFootprint& footprint, size_t end_pressed);
   bool spread(const ActiveFootprint& footprint, size_t end, size_t end_pressed);
   void release_held();
