@@ -107,7 +107,6 @@ constexpr int64_t kReportSteps = 32;
 // it would else fall onto them from the highest one.
 constexpr double kLowering_s = 1.0;
 constexpr double kLowering_m_per_s = 0.01;
-constexpr double kSlip = 0.6;
 constexpr double kTether_n_per_m = 400.0;  // a centimetre on the steepest slope
 constexpr double kTether_ns_per_m = 44.0;  // without overshoot
 constexpr double kWinch_s = 0.05;          // in which the winch makes good an error of speed
@@ -148,15 +147,17 @@ void check(const DigTest& test) {
   check_range("dig", "stroke acceleration", test.stroke_accel_m_per_s2, 0.1, 100.0);
   check_range("dig", "beds", test.beds, 1, 256);
   check_range("dig", "slope", test.slope_deg, 0, 25);
-  if (test.slope_deg > 0.0 && !stays(test.manoeuvre)) {
-    throw InputError("dig: slope = " + shortest(test.slope_deg) +
-                     ", which only a spin and strokes have");
+  check_range("dig", "slip", test.slip, 0.05, 0.99);
+  check_range("dig", "lug height", test.lug_height_m, 0.0, 0.1);
+  if (test.slope_deg > 0.0 && test.manoeuvre == Manoeuvre::kCharge) {
+    throw InputError("dig: slope = " + shortest(test.slope_deg) + ", which a charge has not");
   }
 }
 
 class DiggingRobot {
  public:
-  DiggingRobot(double x, double ground_m) : body_(dBodyCreate(world_.id())) {
+  DiggingRobot(double x, double ground_m, double lug_height_m)
+      : body_(dBodyCreate(world_.id())), lug_height_m_(lug_height_m) {
     dMass mass;
     dMassSetBoxTotal(&mass, kMass_kg, kBody_m.x(), kBody_m.y(), kBody_m.z());
     dBodySetMass(body_, &mass);
@@ -186,7 +187,8 @@ class DiggingRobot {
       contacts[i].motion.velocity = body.velocity + body.omega.cross(contacts[i].arm);
       contacts[i].motion.omega = body.omega;
       contacts[i].motion.surface_speed = belts[i];
-      contacts[i].motion.slip = hold_m_per_s > 0.0 ? kSlip : 0.0;
+      contacts[i].motion.slip = hold_m_per_s > 0.0 ? 1.0 - hold_m_per_s / belts[i] : 0.0;
+      contacts[i].motion.lug_height_m = lug_height_m_;
     }
     bed.press(body, contacts, dt, memory_);
     bed.end_step(dt);
@@ -238,6 +240,7 @@ class DiggingRobot {
  private:
   OdeWorld world_;
   dBodyID body_;
+  double lug_height_m_;
   Eigen::Matrix3d inverse_inertia_;
   BodyMemory memory_;
   std::array<Footprint, 2> belts_{Footprint::track(kHalfBelt_m, kWheelRadius_m, kBeltWidth_m),
@@ -336,7 +339,7 @@ DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, Terrain& be
   const Eigen::Vector3d start = robot.position();
   const double v = test.track_m_per_s;
   const bool spin = test.manoeuvre == Manoeuvre::kSpin;
-  const double hold = test.manoeuvre == Manoeuvre::kSlip ? (1.0 - kSlip) * v : 0.0;
+  const double hold = test.manoeuvre == Manoeuvre::kSlip ? (1.0 - test.slip) * v : 0.0;
   std::array<double, 2> belts = {spin ? -v : v, v};
   const double edge = 0.5 * test.size_m - 0.17;
   const auto steps = static_cast<int64_t>(std::llround(test.duration_s / dt));
@@ -370,8 +373,10 @@ DigResult dig_soil(const DigTest& test, const TaskProgress& progress) {
   check(test);
   SoilBed bed(ground_before(test, 0.0), test.soil, test.options);
   bed.relax_slopes();
-  DiggingRobot robot(start_x(test), bed.surface().max_height_within(start_x(test), 0.0, 0.1));
+  DiggingRobot robot(start_x(test), bed.surface().max_height_within(start_x(test), 0.0, 0.1),
+                     test.lug_height_m);
   DigResult result = drive(test, robot, test.step_s, bed, of_drive(progress, 0, 1));
+  result.balance = bed.balance();
   measure(result);
   return result;
 }
@@ -386,7 +391,8 @@ DigResult dig_one_bed(const DigTest& test, int number, const TaskProgress& progr
   const OfDrive of_bed = of_drive(progress, number, test.beds);
   ParticleBed bed(ground_before(test, test.depth_m), options,
                   [&](std::string_view /*laying*/, double /*share*/) { of_bed(0.0); });
-  DiggingRobot robot(start_x(test), bed.surface().max_height_within(start_x(test), 0.0, 0.1));
+  DiggingRobot robot(start_x(test), bed.surface().max_height_within(start_x(test), 0.0, 0.1),
+                     test.lug_height_m);
   return drive(test, robot, bed.longest_step_s(), bed, of_bed);
 }
 

@@ -46,7 +46,7 @@ MovedVolume standard_error(std::span<const RiseMap> maps, double area_m2);
 enum class Manoeuvre {
   kSpin,     ///< 10 s on the spot, the tracks against each other
   kCharge,   ///< against a mound whose flanks rise at 20 degrees
-  kSlip,     ///< straight ahead while something holds it back to 60 % slip
+  kSlip,     ///< straight ahead while something holds it to a slip; on a slope uphill
   kStrokes,  ///< to and fro: gently into the way ahead, hard into the way back; on a slope, which
              ///< it faces uphill, the other way round
 };
@@ -65,7 +65,9 @@ struct DigTest {
   double stroke_s = 0.1;               ///< strokes: of full speed ahead, 0..5
   double stroke_back_s = 0.22;         ///< strokes: of full speed back, 0..5
   double stroke_accel_m_per_s2 = 1.5;  ///< strokes: of the belts into the way ahead, 0.1..100
-  double slope_deg = 0.0;  ///< spin, strokes: of the ground, rising to the east, 0..25; above
+  double slip = 0.6;                   ///< slip: 0.05..0.99
+  double lug_height_m = 0.002;         ///< of the tread, 0..0.1; nothing to particles
+  double slope_deg = 0.0;  ///< not for charge: of the ground, rising to the east, 0..25; above
                            ///< 0 the spinning robot is tethered to its place
   uint64_t seed = 1;       ///< of the particles' layout
   int beds = 16;           ///< of particles, laid with this seed and the next ones; 1..256
@@ -101,12 +103,13 @@ struct DigResult {
   double behind_share = 0.0;      ///< of the raised volume, west of there
   double end_x_m = 0.0;           ///< where the robot ended
   double end_y_m = 0.0;
-  double time_s = 0.0;      ///< that the drive took
-  double pull_n = 0.0;      ///< slip: what held it back, mean
-  double distance_m = 0.0;  ///< of the body from start to end, straight
-  double turned_rad = 0.0;  ///< about the vertical, all turns counted
-  double lower_by_m = 0.0;  ///< the body at the end against the start
-  double pitch_rad = 0.0;   ///< greatest nose-up pitch
+  double time_s = 0.0;         ///< that the drive took
+  double pull_n = 0.0;         ///< slip: what held it back, mean; negative: pushed it on
+  double distance_m = 0.0;     ///< of the body from start to end, straight
+  double turned_rad = 0.0;     ///< about the vertical, all turns counted
+  double lower_by_m = 0.0;     ///< the body at the end against the start
+  double pitch_rad = 0.0;      ///< greatest nose-up pitch
+  VolumeBalance balance = {};  ///< of deformable ground
 };
 
 /// Throws InputError for figures out of range. Both report the task "digging".

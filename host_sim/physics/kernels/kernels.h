@@ -308,6 +308,7 @@ struct ReactionSums {
   double slip = 0.0;        ///< speed times mobilised share
   double slip_along = 0.0;  ///< its parts ahead and to the left, signed
   double slip_across = 0.0;
+  double depth = 0.0;  ///< of the surface below the undisturbed level, each cell by its share, m
   // Not times the share:
   double units = 0.0;   ///< by which cells yield, units of height
   double thrown = 0.0;  ///< those that go the way of the slip

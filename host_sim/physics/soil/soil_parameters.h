@@ -118,17 +118,28 @@ struct SoilTones {
   std::array<double, 3> dark;
 };
 
+/// How well it is known what slip does to a named soil.
+struct SlipEvidence {
+  std::string_view bearing;             ///< where slip_bearing comes from
+  std::array<double, 2> bearing_range;  ///< in which it lies
+  std::string_view carry = "assumed";   ///< and slip_carry
+  std::array<double, 2> carry_range = {0.0, 1.0};
+};
+
 /// A named soil. Its look stands beside its numbers, since both describe the same material, and so
 /// that a named soil is one row; physics does not read it.
 struct SoilPreset {
   SoilParameters soil;
   SoilTones tones;
+  SlipEvidence slip;
 };
 
 const std::vector<SoilPreset>& soil_presets();
 std::vector<std::string> soil_preset_names();
 /// Throws InputError, listing the known names.
 const SoilParameters& soil_preset(std::string_view name);
+/// Null for a name that is not known.
+const SlipEvidence* slip_evidence(std::string_view name);
 /// The look of a named soil; of an unknown one that of loam.
 const SoilTones& soil_tones(std::string_view name);
 

@@ -40,8 +40,10 @@
 //
 // What slip takes along. A layer goes with the slipping surface: `slip_layer`, or what the
 // surface's lugs hold between them, where that is more (A. R. Reece, Principles of soil-vehicle
-// mechanics, Proceedings of the Institution of Mechanical Engineers 180(2A), 1965). `share` is a
-// cell's touching part; variances are of the cells' positions, weighed with it:
+// mechanics, Proceedings of the Institution of Mechanical Engineers 180(2A), 1965): as much of
+// their height as the surface has sunk. `share` is a cell's touching part; variances are of the
+// cells' positions, weighed with it:
+//   layer   = max(slip_layer, min(lug height, sum(share z) / sum(share)))
 //   slip    = sum(share |m| sliding) / sum(share)                     mean speed, m/s
 //   sides   = sqrt(12 variance + edge^2)                              of the touched rectangle
 //   volume  = layer slip dt width
@@ -87,7 +89,9 @@ void SoilBed::dig_below(const ReactionSums& sums, const ReactionLaw& law,
   patch.half_length = half_side(sums.sum_along_squared, along);
   patch.half_width = half_side(sums.sum_across_squared, across);
   patch.band = 2.0 * std::min(patch.half_length, patch.half_width);
-  const double layer = std::max(soil_.slip_layer_m, contact.motion.lug_height_m);
+  const double layer =
+      std::max(soil_.slip_layer_m,
+               std::min(contact.motion.lug_height_m, std::max(0.0, sums.depth * per_share)));
   const double volume = layer * dt * per_share * 2.0 * sums.slip * patch.half_width;
   dig_remainder_ += volume / (cell_area_ * kHeightUnit_m);
   const Eigen::Vector3d normal = vector(law.axis_x).cross(vector(law.axis_y));

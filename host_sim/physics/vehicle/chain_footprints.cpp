@@ -46,6 +46,7 @@ FootprintContact ChainTrack::band_contact(const CarrierMotion& carrier) {
   motion.velocity = frame.carrier_velocity(frame.centre);
   motion.omega = carrier.omega;
   motion.friction = law_.friction;
+  motion.lug_height_m = geometry_.lug_height_m;
   if (on_its_side || at_rest_) return contact;
   motion.surface_speed = surface_speed(frame);
   motion.slip = signed_slip(motion.surface_speed, motion.velocity.dot(frame.axes.col(0)));

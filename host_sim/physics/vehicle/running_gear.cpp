@@ -184,6 +184,7 @@ FootprintContact RunningGear::make_footprint_contact(FootprintShape shape,
   motion.omega = carrier.omega;
   motion.surface_speed = on_its_side ? 0.0 : speed;
   motion.friction = law_.friction;
+  motion.lug_height_m = geometry_.lug_height_m;
   const double ground_speed = motion.velocity.dot(pose.linear().col(0));
   motion.slip = signed_slip(speed, ground_speed);
   return contact;

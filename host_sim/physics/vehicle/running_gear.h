@@ -163,9 +163,10 @@ struct Wrench {
 struct RunningGearGeometry {
   /// Centre of the front wheel, in the frame of the carrier's centre of mass.
   Eigen::Vector3d front;
-  Eigen::Vector3d rear;  ///< of the rear wheel; equal to `front` for a single wheel
-  double radius = 0.03;  ///< m, belt included
-  double width = 0.03;   ///< m
+  Eigen::Vector3d rear;       ///< of the rear wheel; equal to `front` for a single wheel
+  double radius = 0.03;       ///< m, belt included
+  double width = 0.03;        ///< m
+  double lug_height_m = 0.0;  ///< of the tread, which takes soil along
 };
 
 /// What a unit carries.

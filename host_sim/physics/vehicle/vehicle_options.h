@@ -25,6 +25,8 @@ struct VehicleOptions {
   TrackModel track_model = TrackModel::kBelt;
   ChainOptions chain;
   double track_friction = 0.8;  ///< Coulomb coefficient, rubber on the ground
+  /// Of the tread of tracks or wheels, m; left out: 2 mm on tracks (assumed), none on wheels.
+  std::optional<double> lug_height_m;
   double chassis_friction = 0.4;
   double wall_friction = 0.3;  ///< of anything on the walls of a bed
   GearMotor motor;

@@ -142,6 +142,8 @@ void VehicleParts::add_running_gear(const Assembly& assembly, const VehicleOptio
     return "'" + assembly.bodies[static_cast<size_t>(wheels[0].body)].name + "' " + between + " '" +
            assembly.bodies[static_cast<size_t>(wheels[1].body)].name + "'";
   };
+  constexpr double kTread_m = 0.002;
+  const double lugs = options.lug_height_m.value_or(options.tracks ? kTread_m : 0.0);
   for (const Side side : {kLeft, kRight}) {
     const Wheel front = in_carrier(assembly.wheels.at(static_cast<size_t>(side))[0]);
     const Wheel rear = in_carrier(assembly.wheels.at(static_cast<size_t>(side))[1]);
@@ -156,7 +158,7 @@ void VehicleParts::add_running_gear(const Assembly& assembly, const VehicleOptio
       return shafts_.size() - 1;
     };
     const auto add_unit = [&](const Wheel& a, const Wheel& b, size_t shaft) {
-      const RunningGearGeometry geometry{a.centre, b.centre, a.radius, a.width};
+      const RunningGearGeometry geometry{a.centre, b.centre, a.radius, a.width, lugs};
       units_.push_back({a.carrier, shaft, RunningGear(geometry, options.track_friction, load)});
       add_gear_surface(a.carrier, geometry, shaft);
     };
@@ -174,7 +176,8 @@ void VehicleParts::add_running_gear(const Assembly& assembly, const VehicleOptio
       const size_t of_front = add_shaft(front.driven ? 1 : 0, front.spin_inertia);
       const size_t of_rear = add_shaft(rear.driven ? 1 : 0, rear.spin_inertia);
       if (!front.driven) sides_[static_cast<size_t>(side)].shaft = of_rear;
-      const RunningGearGeometry geometry{front.centre, rear.centre, front.radius, front.width};
+      const RunningGearGeometry geometry{front.centre, rear.centre, front.radius, front.width,
+                                         lugs};
       chains_.push_back({front.carrier,
                          {of_front, of_rear},
                          ChainTrack(geometry, options.chain, options.track_friction, load)});

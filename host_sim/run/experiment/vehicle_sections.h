@@ -95,6 +95,7 @@ struct VehicleSection {
   std::optional<double> leg_angle_deg;
   double track_friction = 0.8;
   double chassis_friction = 0.4;
+  std::optional<double> lug_height_m;
 
   template <class Keys>
   static void list(Keys& keys) {
@@ -133,6 +134,10 @@ struct VehicleSection {
               &V::track_friction);
     keys.real("chassis_friction", "", 0.0, 5, "Coulomb friction between chassis and ground",
               &V::chassis_friction);
+    keys.real("lug_height", "m", 0.0, 0.1,
+              "deformable soil: height of the tread, which takes soil along; left out: 2 mm on "
+              "tracks, none on wheels",
+              &V::lug_height_m);
   }
 };
 

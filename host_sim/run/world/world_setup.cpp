@@ -276,6 +276,7 @@ VehicleOptions vehicle_options(const Experiment& experiment, const std::string& 
   options.chain.links = section.track_links;
   options.chain.tension_n = section.track_tension_n;
   options.track_friction = section.track_friction;
+  options.lug_height_m = section.lug_height_m;
   options.chassis_friction = section.chassis_friction;
   options.wall_friction = experiment.map.wall_friction;
   return options;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/finite_number.h"
 #include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/soil_validation/dig_test.h"
 #include "tools/screed/cli/command.h"
@@ -64,6 +65,25 @@ double fit_slip_layer(DigTest test, double raised_m3, const TaskProgress& progre
   return best;
 }
 
+/// "gravel, slip_bearing 1 (fitted to particles as a layer), slip_carry 0.66 (...)"
+std::string how_well_known(const SoilParameters& soil) {
+  const SlipEvidence* const evidence = slip_evidence(soil.name);
+  if (evidence == nullptr) return soil.name;
+  const SoilParameters& named = soil_preset(soil.name);
+  const auto describe = [](const char* key, double value, double of_name, std::string_view source,
+                           const std::array<double, 2>& range) {
+    const std::string known = value != of_name ? "given"
+                                               : std::string(source) + ", " + shortest(range[0]) +
+                                                     " to " + shortest(range[1]);
+    return std::string(", ") + key + " " + shortest(value) + " (" + known + ")";
+  };
+  return soil.name +
+         describe("slip_bearing", soil.slip_bearing, named.slip_bearing, evidence->bearing,
+                  evidence->bearing_range) +
+         describe("slip_carry", soil.slip_carry, named.slip_carry, evidence->carry,
+                  evidence->carry_range);
+}
+
 SoilReport run_dig(DigArguments a) {
   a.test.manoeuvre = manoeuvre_named(a.manoeuvre);
   if (a.ground != "scm" && a.ground != "particles") {
@@ -109,12 +129,17 @@ SoilReport run_dig(DigArguments a) {
   if (particles && a.test.beds > 1)
     add("carried_error_cm3m", result.carried_error_m4 * 1e6, "%.3f");
   add("time_s", result.time_s, "%.2f");
-  if (a.test.manoeuvre == Manoeuvre::kSlip) add("pull_n", result.pull_n, "%.2f");
+  if (a.test.manoeuvre == Manoeuvre::kSlip) {
+    add("sunk_cm3_per_s", result.sunk_m3 * 1e6 / result.time_s, "%.2f");
+    add("carried_cm3m_per_s", result.carried_m4 * 1e6 / result.time_s, "%.3f");
+    add("pull_n", result.pull_n, "%.2f");
+  }
   add("distance_m", result.distance_m, "%.4f");
   if (a.test.manoeuvre == Manoeuvre::kStrokes) add("end_x_m", result.end_x_m, "%.4f");
   add("turned_deg", result.turned_rad * kDegrees, "%.1f");
   add("lower_by_mm", result.lower_by_m * kMilli, "%.2f");
   add("pitch_deg", result.pitch_rad * kDegrees, "%.2f");
+  if (!particles) add("volume_error", static_cast<double>(result.balance.error()), "%.0f");
   if (!a.charts.empty()) {
     PictureOptions picture;
     picture.width_px = 800;
@@ -125,7 +150,7 @@ SoilReport run_dig(DigArguments a) {
   }
   return {"dig",
           (particles ? text("particles of radius %g mm", a.test.particle.radius_m * kMilli)
-                     : a.test.soil.name) +
+                     : how_well_known(a.test.soil)) +
               text(", grid %g mm", a.cell_m * kMilli),
           "must be", lines};
 }
@@ -161,10 +186,13 @@ void register_soil_dig_command(Command& soil, Program& program) {
   add_number(*command, "--stroke-accel", a->test.stroke_accel_m_per_s2,
              "Strokes: acceleration of the belts into the way ahead [m/s^2]", {0.1, 100.0});
   add_number(*command, "--seed", a->test.seed, "Seed of the particle layout", kSeedRange);
-  add_number(
-      *command, "--slope", a->test.slope_deg,
-      "Slope that a spin, tethered to its place, or strokes are on, rising to the east [deg]",
-      {0.0, 25.0});
+  add_number(*command, "--slip", a->test.slip, "Slip: of the belts", {0.05, 0.99});
+  add_number(*command, "--lug-height", a->test.lug_height_m,
+             "Height of the belts' tread, which takes soil along [m] (scm)", {0.0, 0.1});
+  add_number(*command, "--slope", a->test.slope_deg,
+             "Slope of the ground, rising to the east [deg]; a spinning robot is tethered to its "
+             "place on it, a charge has none",
+             {0.0, 25.0});
   add_number(*command, "--beds", a->test.beds, "Number of particle beds whose heights are averaged",
              {1, 256});
   add_number(*command, "--fit-raised", a->fit_cm3,
