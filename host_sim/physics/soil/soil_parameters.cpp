@@ -51,13 +51,15 @@ SoilParameters soil(const char* name, double k_phi, double k_c, double n, double
 /// Of gravel, fitted; assumed of other soils, where nobody has measured it.
 constexpr double kCarry = 0.66;
 
-// slip_bearing where no test has slipped: of sand as of cmu_2022, between ding_2011's and none. A
-// long belt sinks four times as deep at slip 1 as at rest (M. G. Lyasko, Slip sinkage effect in
-// soil-vehicle mechanics, Journal of Terramechanics 47(1), 2010); 0.28 gives three times where n is
-// 1.1. Clay bears 5.14 c before it flows, twice the pressure of small robots.
-constexpr double kSandBearing = 0.28;
-constexpr SlipEvidence kAsSand{"assumed, as cmu_2022", {0.06, 1.0}};
-constexpr SlipEvidence kAsClay{"assumed, does not flow", {0.5, 1.0}};
+// slip_bearing where no test has slipped. Of loose sand as of cmu_2022, between ding_2011's and
+// none: a long belt sinks four times as deep at slip 1 as at rest (M. G. Lyasko, Slip sinkage
+// effect in soil-vehicle mechanics, Journal of Terramechanics 47(1), 2010); 0.28 gives three times
+// where n is 1.1. Where cohesion alone bears what stands there, the soil does not flow: a footing
+// on it bears 5 c to 33 c, from clay to sand (A. S. Vesic, Journal of the Soil Mechanics and
+// Foundations Division 99(SM1), 1973), 20 kPa and more below robots of 1 to 2 kPa.
+constexpr double kLooseBearing = 0.28;
+constexpr SlipEvidence kLoose{"assumed, as cmu_2022", {0.06, 1.0}};
+constexpr SlipEvidence kCohesive{"assumed, cohesion bears", {0.28, 1.0}};
 
 SoilParameters assumed(SoilParameters s, double slip_bearing) {
   s.slip_bearing = slip_bearing;
@@ -117,14 +119,14 @@ const std::vector<SoilPreset>& soil_presets() {
   // Terramechanics 48(1), 2011; cmu_2022: C. Pavlov, A. Johnson, 2022. The stiffness of unloading
   // is not in these sources: docs/studies/soil.md has its order of magnitude.
   static const std::vector<SoilPreset> presets = {
-      {assumed(soil("soft", 0.2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 4e7), kSandBearing), kLoam, kAsSand},
-      {assumed(soil("viper", 2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 1e8), kSandBearing), kLoam, kAsSand},
-      {assumed(soil("lete_sand", 5301e3, 102e3, 0.793, 1.3e3, 31.1, 0.012, 1e8), kSandBearing),
-       kSand, kAsSand},
-      {assumed(soil("dry_sand", 1528.43e3, 0.99e3, 1.1, 1.04e3, 28.0, 0.025, 1e8), kSandBearing),
-       kSand, kAsSand},
+      {assumed(soil("soft", 0.2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 4e7), kLooseBearing), kLoam, kLoose},
+      {assumed(soil("viper", 2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 1e8), kLooseBearing), kLoam, kLoose},
+      {assumed(soil("lete_sand", 5301e3, 102e3, 0.793, 1.3e3, 31.1, 0.012, 1e8), 1.0), kSand,
+       kCohesive},
+      {assumed(soil("dry_sand", 1528.43e3, 0.99e3, 1.1, 1.04e3, 28.0, 0.025, 1e8), 1.0), kSand,
+       kCohesive},
       {assumed(soil("clay", 692.15e3, 13.19e3, 0.5, 4.14e3, 13.0, 0.010, 4e7), 1.0), kClay,
-       kAsClay},
+       kCohesive},
       {ding_2011(), kSimulant, {"fitted to wheels", {0.0, 0.13}}},
       {cmu_2022(), kSand, {"fitted to wheels", {0.26, 0.31}}},
       {gravel(),

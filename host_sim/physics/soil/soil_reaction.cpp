@@ -157,6 +157,11 @@ ReactionLaw SoilBed::reaction_law(const Range& range, const PressingBody& body,
   // Where a surface has none of its own, the soil's strength alone counts.
   law.adhesion = std::min(contact.motion.adhesion_pa, kNoLimit);
   law.surface_friction = std::min(contact.motion.soil_friction, kNoLimit);
+  if (contact.motion.lug_height_m > 0.0) {
+    const double filled = std::min(1.0, memory.depth / contact.motion.lug_height_m);
+    law.adhesion = filled * soil_.cohesion_pa;
+    law.surface_friction = filled * tan_friction_ + (1.0 - filled) * contact.motion.friction;
+  }
   law.axis_x = triple(frame.axes.col(0));
   law.axis_y = triple(left);
   law.level_ahead = triple(level_ahead);
@@ -227,6 +232,7 @@ void SoilBed::react(const Range& range, const PressingBody& body, FootprintConta
   settle(range, slips);
   if (slips) dig_below(sums, law, contact, dt);
   contact.memory->sinkage = sums.sinkage;
+  contact.memory->depth = sums.area > 0.0 ? std::max(0.0, sums.depth / sums.area) : 0.0;
   TerrainReaction& reaction = contact.reaction;
   reaction.force = vector(sums.force);
   reaction.torque = vector(sums.torque);

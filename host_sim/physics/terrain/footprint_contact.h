@@ -74,6 +74,7 @@ struct ContactMemory {
   double patch_b_m = 0.0;  ///< b of Bekker's formula, from the touched area
   double patch_area_m2 = 0.0;
   double sinkage = 0.0;  ///< greatest depth in the last step, m
+  double depth = 0.0;    ///< mean depth in the last step, m; of surfaces that dig
   double slip = 0.0;     ///< mean over the length of the contact
   ShearField shear;      ///< along the running surface
   ShearField side;       ///< of the soil beside it, for what is pushed aside
@@ -83,7 +84,7 @@ struct ContactMemory {
 
   /// The footprint is in the air. Keeps room.
   void leave() {
-    patch_b_m = patch_area_m2 = sinkage = slip = 0.0;
+    patch_b_m = patch_area_m2 = sinkage = depth = slip = 0.0;
     path = {};
     alone = {};
   }
