@@ -16,7 +16,7 @@ DigResult dig(Manoeuvre manoeuvre, double cell_m, double spin_s = 10.0, bool dra
   DigTest test;
   test.manoeuvre = manoeuvre;
   test.soil = soil_preset("gravel");
-  if (!dragging) test.soil.slip_layer_m = 0.0;
+  if (!dragging) test.soil.slip_layer_m = test.lug_height_m = 0.0;
   test.cell_m = cell_m;
   test.duration_s = manoeuvre == Manoeuvre::kSpin ? spin_s : 10.0;
   return dig_soil(test);
@@ -103,7 +103,7 @@ TEST(SoilDigTest, ASpinOnASlopeCarriesMaterialDownhill) {
   EXPECT_NEAR(dig_soil(test).downhill_m4 * 1e6, 2.92, 2 * 0.25);
   test.slope_deg = 15.0;
   EXPECT_NEAR(dig_soil(test).downhill_m4 * 1e6, 4.75, 2 * 0.28);
-  test.manoeuvre = Manoeuvre::kSlip;
+  test.manoeuvre = Manoeuvre::kCharge;
   EXPECT_THROW(dig_soil(test), InputError);
 }
 

@@ -23,6 +23,7 @@ constexpr double kUnit_m3 = kHeightUnit_m * kSpacing_m * kSpacing_m;
 SoilParameters dragged_soil() {
   SoilParameters soil = soil_preset("lete_sand");
   soil.slip_layer_m = 0.0004;
+  soil.slip_carry = 0.0;
   soil.compaction = 0.0;
   soil.repose_deg = 60.0;       // what is heaped up stays where it is
   soil.elastic_pa_per_m = 1e5;  // so soft that the plate goes on touching what it digs away
@@ -255,6 +256,50 @@ TEST(SoilDigging, WhereNothingIsPushedAsideItIsGone) {
   EXPECT_EQ(heaped, 0.0);
   EXPECT_EQ(dug.balance.in_transit, 0);
   EXPECT_EQ(dug.balance.error(), 0);
+}
+
+TEST(SoilDigging, LugsTakeNoMoreThanTheyHaveSunkInto) {
+  SoilParameters soil = dragged_soil();
+  soil.slip_layer_m = 0.0;
+  const double shallow = dig({}, soil, 0.01, true, nullptr, 0.001).volume_m3();
+  const double deep = dig({}, soil, 0.01, true, nullptr, 0.05).volume_m3();
+  // The plate is 2 mm deep, less what it has dug meanwhile.
+  EXPECT_GT(deep, 1.2 * shallow);
+  EXPECT_LT(deep, 2.0 * shallow);
+}
+
+// Drags a plate sideways that has sunk by some 10 um, under 2 kPa.
+double shear_of_plate(double lug_height_m, double cohesion_pa) {
+  SoilParameters soil = soil_preset("lete_sand");
+  soil.cohesion_pa = cohesion_pa;
+  const HeightField level(kNodes, kNodes, kSpacing_m, false);
+  SoilBed bed(level, soil, SoilOptions{NormalStress::kVertical});
+  Footprint plate = Footprint::box({0.1, 0.05, kThickness_m});
+  FootprintMotion motion;
+  motion.mass_kg = 1.0;
+  motion.lug_height_m = lug_height_m;
+  ContactMemory memory;
+  double height = 0.5 * kThickness_m;
+  double rising = 0.0;
+  TerrainReaction reaction;
+  for (int i = 0; i < 3000; ++i) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation().z() = height;
+    plate.set_pose(pose);
+    motion.velocity = {i < 1000 ? 0.0 : 0.05, 0.0, rising};
+    reaction = bed.press(plate, motion, kStep_s, memory);
+    bed.end_step();
+    rising += kStep_s * (reaction.force.z() - 10.0) / motion.mass_kg;
+    height += kStep_s * rising;
+  }
+  return -reaction.force.x();
+}
+
+TEST(SoilDigging, CohesionHoldsATreadOnlyAsDeepAsItHasSunk) {
+  const double tan_phi = std::tan(31.1 * std::numbers::pi / 180.0);
+  EXPECT_NEAR(shear_of_plate(0.0, 1300.0), 1300.0 * 0.005 + 10.0 * tan_phi, 0.3) << "no tread";
+  EXPECT_NEAR(shear_of_plate(0.002, 1300.0), 10.0 * 0.8, 0.3) << "rubber on top of the soil";
+  EXPECT_NEAR(shear_of_plate(0.002, 0.0), 10.0 * tan_phi, 0.3) << "the soil gives way first";
 }
 
 TEST(SoilDigging, APlateThatDoesNotSlipDigsNothing) {
