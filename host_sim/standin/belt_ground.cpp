@@ -234,16 +234,20 @@ void BeltGround::compact(const BeltStride& stride, std::size_t side) {
 /// As SoilBed::dig_below(), of a belt in a stride.
 void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::size_t side) {
   const BeltShear& shear = stride.shear.at(side);
-  if (shear.length_m <= 0.0 || (soil_.slip_layer_m <= 0.0 && soil_.slip_bearing >= 1.0)) return;
+  if (shear.length_m <= 0.0 ||
+      (soil_.slip_layer_m <= 0.0 && tracks_.lug_height_m <= 0.0 && soil_.slip_bearing >= 1.0))
+    return;
   double cells = 0.0;
   double along = 0.0;
   double square = 0.0;
+  double depth = 0.0;
   for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
     const Cell& cell = cells_[i];
     if (cell.pressure <= 0.0) continue;
     cells += cell.share;
     along += cell.share * cell.x;
     square += cell.share * cell.x * cell.x;
+    depth += cell.share * cell.depth;
     flow_.shear(cell.at.node, cell.share * shear.patch_m.at(patch_of(cell.x)));
   }
   if (cells <= 0.0) return;
@@ -259,13 +263,16 @@ void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::siz
       0.5 * std::sqrt(12.0 * std::max(0.0, square / cells - along * along) + cell_area_);
   patch.half_width = 0.5 * tracks_.width_m;
   patch.band = tracks_.width_m;
-  const double layer = soil_.slip_layer_m / kHeightUnit_m;
+  const double layer =
+      std::max(soil_.slip_layer_m, std::min(tracks_.lug_height_m, depth / cells)) / kHeightUnit_m;
   dig_remainder_ += fit_.digging * layer * shear.length_m * tracks_.width_m / cell_area_;
   const Eigen::Vector2d fall = -(plane.forward * forward + plane.left * left);
   const Eigen::Vector2d downhill = shear.length_m / std::max(tan_repose_, fall.norm()) * fall;
   const Eigen::Vector2d dragged = shear.forward_m * forward + shear.left_m * left;
   patch.carried = layer * cells * (fit_.downhill * downhill - soil_.slip_carry * dragged);
-  patch.carried -= soil_.slip_carry * 2.0 * patch.half_length * thrown_ / shear.length_m * dragged;
+  const Eigen::Vector2d past = 2.0 * (patch.half_length * shear.forward_m * forward +
+                                      patch.half_width * shear.left_m * left);
+  patch.carried -= soil_.slip_carry * thrown_ / shear.length_m * past;
   const auto units = static_cast<std::int64_t>(dig_remainder_);
   dig_remainder_ -= static_cast<double>(units);
   flow_.dig(patch, units, pressed_ > 0.0 ? thrown_ / pressed_ : 0.0);
@@ -273,7 +280,7 @@ void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::siz
 
 void BeltGround::keep_support(const TrackPlane& plane, Stance& stance) const {
   BeltSupport& support = stance.support;
-  support = {plane.forward, plane.left, {}, {}, {}, {}};
+  support = {plane.forward, plane.left, {}, {}, {}, {}, {1.0, 1.0}};
   const double half_cell = 0.5 * surface().spacing_m();
   double sum = 0.0;
   for (const std::size_t side : {0U, 1U}) {
@@ -294,7 +301,9 @@ void BeltGround::keep_support(const TrackPlane& plane, Stance& stance) const {
       area += touched;
       depth += touched * cell.depth;
     }
-    stance.sinkage_m.at(side) = area > 0.0 ? depth / area : 0.0;
+    const double sinkage = area > 0.0 ? depth / area : 0.0;
+    stance.sinkage_m.at(side) = sinkage;
+    support.filled.at(side) = sinkage < tracks_.lug_height_m ? sinkage / tracks_.lug_height_m : 1.0;
   }
   if (sum <= 0.0) {
     support.load = level_support(tracks_).load;

@@ -6,7 +6,7 @@
 //   a robot stands where Bekker's pressures below its belts support its weight;
 //   cells below them are compacted to the belts' depth, what leaves them is laid down beside and
 //   ahead (MaterialFlow::deposit);
-//   slip digs: volume = slip_layer slip width, carried down the slope and with the belt
+//   slip digs: volume = layer slip width, carried down the slope and with the belt
 //   (soil_reaction.cpp, Digging);
 //   slopes above the angle of repose slide.
 // Heights are integers and soil moves in whole units: the volume stays the same to the last bit. A

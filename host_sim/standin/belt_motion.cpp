@@ -111,6 +111,7 @@ BeltMotion::BeltMotion(const TrackGeometry& tracks, const SoilParameters& soil, 
       patch_m_(2.0 * tracks.half_length_m / kBeltPatches),
       cohesion_pa_(soil.cohesion_pa),
       tan_friction_(portable::tan(soil.friction_deg * std::numbers::pi / 180.0)),
+      rubber_(tracks.friction),
       per_modulus_(1.0 / soil.shear_modulus_m) {
   for (std::size_t i = 0; i < kBeltPatches; ++i) {
     patches_[i].x = patch_m_ * (0.5 * (kBeltPatches - 1) - static_cast<double>(i));
@@ -169,6 +170,7 @@ void BeltMotion::carry(const BeltSupport& support) {
 void BeltMotion::shear(const BeltSupport& support, System& system) {
   const double weight = weight_on(support, mass_kg_);
   const BothBelts along_slip = speeds_ - forward_ + turn_ * middle_;
+  const BothBelts filled = both(support.filled);
   BothBelts load = BothBelts::Zero();
   BothBelts forward = BothBelts::Zero();  // forces times the frame
   BothBelts stiffness = BothBelts::Zero();
@@ -176,7 +178,10 @@ void BeltMotion::shear(const BeltSupport& support, System& system) {
     Patch& patch = patches_[i];
     const BothBelts carries = weight * both(support.load, i);
     load += carries;
-    patch.strength = cohesion_pa_ * both(support.area, i) + carries * tan_friction_;
+    const BothBelts cohesion = cohesion_pa_ * both(support.area, i);
+    patch.strength =
+        (cohesion + carries * tan_friction_)
+            .min(filled * cohesion + carries * (filled * tan_friction_ + (1.0 - filled) * rubber_));
     const double across_slip = left_ + turn_ * patch.x;
     patch.slip = (along_slip.square() + across_slip * across_slip).sqrt();
     const BothBelts kept = 1.0 / (1.0 + kTick_s * per_modulus_ * patch.slip);

@@ -37,6 +37,7 @@ struct BeltFit {
 // H. K. Gummel, IEEE Transactions on Electron Devices 16, 1969; here within 0.005), and with
 //   slip  = velocity of the belt's surface, seen from the ground, backward and to the right
 //   force = (c A + W tan phi) m,  across the belt times BeltFit::sideways
+// where the belt's tread has sunk in; where it has not, rubber holds without cohesion.
 // Gravity pulls down the slope, rolling resists. A frame is one implicit step, stable however stiff
 // the soil is. A belt that stands shears until it holds, and then stays: what is not driven and not
 // on too steep a slope stands for ever.
@@ -57,6 +58,8 @@ struct BeltSupport {
   /// Between what of a belt touches first and last, from the robot's middle, m.
   std::array<double, 2> front{};
   std::array<double, 2> rear{};
+  /// As much of the tread's height as the belt has sunk, 0..1; 1 where there is no tread.
+  std::array<double, 2> filled{1.0, 1.0};
 };
 /// On level, even ground.
 BeltSupport level_support(const TrackGeometry& tracks);
@@ -122,6 +125,7 @@ class BeltMotion {
   double patch_m_;    // length of a patch
   double cohesion_pa_;
   double tan_friction_;
+  double rubber_;  // its friction
   double per_modulus_;
   double forward_ = 0.0;  // along the slope, m/s
   double left_ = 0.0;

@@ -22,8 +22,10 @@ FrameMotion PlanarPose::since(const PlanarPose& earlier) const {
   return {c * dx + s * dy, c * dy - s * dx, heading_rad - earlier.heading_rad};
 }
 
-TrackGeometry track_geometry(const Assembly& robot) {
+TrackGeometry track_geometry(const Assembly& robot, const VehicleOptions& options) {
   TrackGeometry tracks;
+  tracks.lug_height_m = options.lugs_m();
+  tracks.friction = options.track_friction;
   const auto& [front, rear] = robot.wheels[0];
   const Eigen::Vector3d& at = front.centre;
   tracks.half_length_m = 0.5 * (at.x() - rear.centre.x());

@@ -5,6 +5,7 @@
 
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/vehicle/drive_train.h"
+#include "host_sim/physics/vehicle/vehicle_options.h"
 
 namespace screed {
 
@@ -38,9 +39,11 @@ struct TrackGeometry {
   double mass_ahead_m = 0.0;         ///< its centre, ahead of the origin
   double mass_height_m = 0.0534;     ///< and over the lower run
   double yaw_inertia_kg_m2 = 0.009;  ///< about that centre's vertical
+  double lug_height_m = 0.002;       ///< of the tread
+  double friction = 0.8;             ///< of rubber, where the tread has not sunk in
 };
 /// Of the left side's wheels.
-TrackGeometry track_geometry(const Assembly& robot);
+TrackGeometry track_geometry(const Assembly& robot, const VehicleOptions& options);
 
 /// The plane of the tracks' lower runs: its height where the robot's vertical axis meets it, and
 /// its slopes forward and to the left (rise over run).

@@ -167,7 +167,7 @@ BeltGround ground_of(const HeightField& terrain, const TrackGeometry& tracks,
 
 StandInKind kind_of(const Assembly& model, const PlantOptions& options) {
   StandInKind kind;
-  kind.tracks = track_geometry(model);
+  kind.tracks = track_geometry(model, options.vehicle);
   kind.planar = {options.vehicle.motor, options.battery, kind.tracks.radius_m,
                  kind.tracks.half_tread_m};
   kind.outline = VehicleParts(model, options.vehicle).outline_at_rest();
@@ -244,7 +244,7 @@ std::optional<Overlap> overlap(const StandInRobot& robot, const StandInRobot& ot
 
 StandInPlant::StandInPlant(const HeightField& terrain, const Assembly& model,
                            const PlantOptions& options, const BeltFit& fit)
-    : ground_(ground_of(terrain, track_geometry(model), options, fit)) {
+    : ground_(ground_of(terrain, track_geometry(model, options.vehicle), options, fit)) {
   const StandInKind kind = kind_of(model, options);
   for (const StartPose& start : options.starts) {
     robots_.push_back(

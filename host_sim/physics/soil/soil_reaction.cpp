@@ -51,7 +51,8 @@
 // (MaterialFlow::deposit()):
 //   thrown  = 1 - (|v n| + max(0, sinking / dt)) / flow               none where that is negative
 // Both go along with the surface, the slower the deeper they lie:
-//   carried = slip_carry (volume + thrown) length                     the way the surface slips
+//   carried = slip_carry (volume length + thrown sides)               the way the surface slips,
+// along by the length of the touched rectangle, across by its width.
 // The layer slips in the direction of all that shears it. Gravity does so, too: down a slope theta
 // with tan(theta) / tan(repose) of what makes it slip, so it goes that way with this part of its
 // speed, and by gravity no faster than it slips:
@@ -101,7 +102,9 @@ void SoilBed::dig_below(const ReactionSums& sums, const ReactionLaw& law,
   const Eigen::Vector2d slips =
       sums.slip_along * forward.head<2>() + sums.slip_across * left.head<2>();
   patch.carried += layer * soil_.slip_carry * dt / kHeightUnit_m * slips;
-  patch.carried += soil_.slip_carry * 2.0 * patch.half_length * sums.thrown / sums.slip * slips;
+  const Eigen::Vector2d past = 2.0 * (patch.half_length * sums.slip_along * forward.head<2>() +
+                                      patch.half_width * sums.slip_across * left.head<2>());
+  patch.carried += soil_.slip_carry * sums.thrown / sums.slip * past;
   const auto units = static_cast<int64_t>(dig_remainder_);
   dig_remainder_ -= static_cast<double>(units);
   flow_.dig(patch, units, sums.units > 0.0 ? sums.thrown / sums.units : 0.0);

@@ -2,6 +2,8 @@
 // vehicle.h, which brings ODE: worlds without it take these options too.
 #pragma once
 
+#include <optional>
+
 #include "host_sim/physics/vehicle/drive_train.h"
 
 namespace screed {
@@ -24,12 +26,14 @@ struct VehicleOptions {
   bool tracks = true;
   TrackModel track_model = TrackModel::kBelt;
   ChainOptions chain;
-  double track_friction = 0.8;  ///< Coulomb coefficient, rubber on the ground
-  /// Of the tread of tracks or wheels, m; left out: 2 mm on tracks (assumed), none on wheels.
-  std::optional<double> lug_height_m;
+  double track_friction = 0.8;         ///< Coulomb coefficient, rubber on the ground
+  std::optional<double> lug_height_m;  ///< of the tread; left out: as lugs_m() says
   double chassis_friction = 0.4;
   double wall_friction = 0.3;  ///< of anything on the walls of a bed
   GearMotor motor;
+
+  /// Height of the tread of tracks or wheels, m: 2 mm on tracks is assumed.
+  double lugs_m() const { return lug_height_m.value_or(tracks ? 0.002 : 0.0); }
 };
 
 }  // namespace screed

@@ -142,8 +142,7 @@ void VehicleParts::add_running_gear(const Assembly& assembly, const VehicleOptio
     return "'" + assembly.bodies[static_cast<size_t>(wheels[0].body)].name + "' " + between + " '" +
            assembly.bodies[static_cast<size_t>(wheels[1].body)].name + "'";
   };
-  constexpr double kTread_m = 0.002;
-  const double lugs = options.lug_height_m.value_or(options.tracks ? kTread_m : 0.0);
+  const double lugs = options.lugs_m();
   for (const Side side : {kLeft, kRight}) {
     const Wheel front = in_carrier(assembly.wheels.at(static_cast<size_t>(side))[0]);
     const Wheel rear = in_carrier(assembly.wheels.at(static_cast<size_t>(side))[1]);
