@@ -233,7 +233,7 @@ std::array<BeltShear, 2> BeltMotion::shear() const {
     for (const Eigen::Index side : {0, 1}) {
       BeltShear& belt = belts[static_cast<std::size_t>(side)];
       belt.patch_m[i] = length[side];
-      belt.patch_flow_m[i] = slip_flow(mobilised[side], length[side]);
+      belt.patch_flow_m[i] = slip_flow(mobilised[side], length[side] / kTick_s) * kTick_s;
       belt.forward_m += mobilised[side] * along[side] / kBeltPatches;
       belt.left_m += mobilised[side] * across / kBeltPatches;
       belt.length_m += length[side] / kBeltPatches;

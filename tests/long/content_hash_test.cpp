@@ -19,12 +19,12 @@ struct KnownRun {
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "e5a5071a4f22145fdaf6afdaa61e6a4a"},
-    {"soft_bed", "--duration 6", "7d1236bbb204cb5e50a7731f4881af78"},
-    {"soft_bed", "--hal surrogate --duration 10", "870cfade8418b078ef1d2d82b5113f0d"},
+    {"soft_bed", "--duration 6", "d70aac75f8447f38a9ac7087c0840190"},
+    {"soft_bed", "--hal surrogate --duration 10", "c04c870625280fd75dced74dea49657b"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.slip_layer=0.002 --duration 4",
-     "09fa64b50db164a6e78709d2ff2c91b4"},
+     "d343a3acd534d35357ce414c26c467b4"},
     {"gravel_bed", "--duration 1", "90e600f7d9104c20cf1e6a16d5fca9f7"},
 }};
 
@@ -48,7 +48,7 @@ TEST_F(ContentHash, OfABedUnderTheRobotIsTheSame) {
       "--left 0.1 --right 0.2 --slip-layer 0.001");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(Json::parse(result.out)["heights_hash"].get<std::string>(),
-            "c6b2c753aa7a1978966c8b88fe7d436b");
+            "262bdf98a5fa2ad9e7cbaf57f72cd55c");
 }
 
 }  // namespace

@@ -143,9 +143,9 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "56f569915fed5fee4a624122511c5af1", "fdff552b6c97200a1886cf669b6ed7d9",
-                "8ff15ecfee08833af68d93cc46c03b7d", "5e1f19cce2c6eaf1706afaa16215f173",
-                "44cfc5f4d3c16b5399f8f4e017315c85", "bcd3317cdd3cadf0497bad437e25fa33"}));
+                "6011a21a434635fc1514b9a8c2f4f9e0", "2e16b62ab0def4560816f9bdf1e15e4e",
+                "9b4886fa573a967b70ae599add9a6712", "0a862dd5f5303f8ffef3af8ccadd0a5a",
+                "a923c3c0d37d63b448b4aad2799e9916", "3ca0224322a3e1fc9cb21dd9acc0e906"}));
 }
 
 // Courses with four robots have a step that they allow, those on particles all that particles need.

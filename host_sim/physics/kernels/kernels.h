@@ -288,6 +288,7 @@ struct ReactionLaw {
   ShearView aside;
   double slip_bearing;  ///< soil_laws.h
   double slip_flow;     ///< its factor
+  double slip_still;    ///< what slides by less does not flow, m/s
   double dt;
   Triple velocity;  ///< of the footprint's centre
   double turning;   ///< of the body about the vertical, rad/s

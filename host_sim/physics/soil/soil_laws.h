@@ -108,7 +108,7 @@ class PassivePressure {
 // Between them the share grows with the ratio of the speeds at which the surface moves along its
 // normal and the soil flows along with it:
 //   share = min(1, slip_bearing + (1 - slip_bearing) |v_normal| / flow)
-//   flow  = 1.45 m^2 v_sliding
+//   flow  = 1.45 m^2 (v_sliding - 0.1 mm/s)
 // m: the mobilised share of the shear strength (shear_field.h). The form is that of footings under
 // an inclined load, whose capacity falls as they move along more than down (R. Nova, L. Montrasio,
 // Geotechnique 41(2), 1991; G. Gottardi, G. T. Houlsby, R. Butterfield, Geotechnique 49(4), 1999).
@@ -116,8 +116,12 @@ class PassivePressure {
 
 inline constexpr double kSlipFlow = 1.45;
 
-inline double slip_flow(double mobilised_squared, double sliding) {
-  return kSlipFlow * mobilised_squared * sliding;
+/// Sliding by less does not count: a robot that stands on very soft soil, beside slopes that slide,
+/// would else tremble for ever.
+inline constexpr double kSlipStill_m_per_s = 1e-4;
+
+inline double slip_flow(double mobilised_squared, double sliding_m_per_s) {
+  return kSlipFlow * mobilised_squared * std::max(0.0, sliding_m_per_s - kSlipStill_m_per_s);
 }
 
 inline double bearing_under_slip(double slip_bearing, double normal, double flow) {

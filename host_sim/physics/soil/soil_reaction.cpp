@@ -16,7 +16,7 @@
 //
 // Slip. A surface that slides over soil is borne by less (soil_laws.h). v is its speed where the
 // ground stays, n its normal; what the body sinks in the step is part of it:
-//   flow     = 1.45 |m|^2 sliding
+//   flow     = 1.45 |m|^2 (sliding - 0.1 mm/s)
 //   share    = min(1, slip_bearing + (1 - slip_bearing) (|v n| + max(0, sinking / dt)) / flow)
 //   pressure = share times that of Bekker's curve
 //
@@ -186,6 +186,7 @@ ReactionLaw SoilBed::reaction_law(const Range& range, const PressingBody& body,
   law.per_width = 0.5 / frame.contour.half_width_m;
   law.slip_bearing = soil_.slip_bearing;
   law.slip_flow = kSlipFlow;
+  law.slip_still = kSlipStill_m_per_s;
   law.dt = dt;
   law.velocity = triple(body.velocity + body.omega.cross(centre - body.centre));
   law.turning = body.omega.z();

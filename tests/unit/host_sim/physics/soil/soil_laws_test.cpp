@@ -179,7 +179,8 @@ TEST(SlipBearingTest, FallsFromAllToItsShareWithTheRatioOfBothSpeeds) {
   EXPECT_DOUBLE_EQ(bearing_under_slip(0.2, 0.005, 0.01), 0.6);
   EXPECT_DOUBLE_EQ(bearing_under_slip(0.2, -0.005, 0.01), 0.6) << "nor out";
   EXPECT_DOUBLE_EQ(bearing_under_slip(0.2, 0.02, 0.01), 1.0);
-  EXPECT_DOUBLE_EQ(slip_flow(0.25, 0.1), 1.45 * 0.25 * 0.1);
+  EXPECT_DOUBLE_EQ(slip_flow(0.25, 0.1), 1.45 * 0.25 * 0.0999);
+  EXPECT_EQ(slip_flow(1.0, 5e-5), 0.0) << "what trembles does not flow";
 }
 
 TEST(PassivePressureTest, AtThirtyDegreesIsTwelveHalvesOfTheWeight) {
