@@ -80,8 +80,8 @@ TEST(SoilDriving, ToleratesTwiceTheYawGain) {
 }
 
 // Along a slope at full speed the tracks have no room left for a turn: the speed is reduced, and
-// what the slope turned the robot by is turned back. Where the tread digs, dry_sand turns it by 1.02
-// degrees within the first second.
+// what the slope turned the robot by is turned back. Where the tread digs, dry_sand turns it
+// by 1.02 degrees within the first second.
 TEST(SoilDriving, KeepsItsHeadingAtFullSpeed) {
   for (const char* soil : {"viper", "dry_sand", "clay"}) {
     for (const double speed : {0.25, -0.25}) {
@@ -96,7 +96,8 @@ TEST(SoilDriving, KeepsItsHeadingAtFullSpeed) {
         drive.run(1.0);
         const double turned =
             std::remainder(drive.attitude().heading - start, 2.0 * std::numbers::pi);
-        EXPECT_LT(std::abs(turned) / kDeg, second == 1 ? 1.05 : 1.0) << soil << " " << speed << ", " << second << " s";
+        EXPECT_LT(std::abs(turned) / kDeg, second == 1 ? 1.05 : 1.0)
+            << soil << " " << speed << ", " << second << " s";
       }
     }
   }

@@ -109,7 +109,8 @@ TEST(MaterialFlow, NothingIsSetDownOnTheWayOfAMovingFootprint) {
 }
 
 TEST(MaterialFlow, TheRutOfADiagonalWayLiesBehindItAtAnySpeed) {
-  // Nothing lies beside this node but ahead or behind: then it goes ahead. Ahead of or beside the line through the node at right angles to the way is not behind.
+  // Nothing lies beside this node but ahead or behind: then it goes ahead. Ahead of or beside the
+  // line through the node at right angles to the way is not behind.
   for (const double speed : {0.002, 0.5}) {
     MaterialFlow flow = level();
     press(flow, 10, 10, 400, 0.8 * speed, 0.6 * speed);

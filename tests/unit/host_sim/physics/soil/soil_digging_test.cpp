@@ -299,7 +299,7 @@ TEST(SoilDigging, CohesionHoldsATreadOnlyAsDeepAsItHasSunk) {
   const double tan_phi = std::tan(31.1 * std::numbers::pi / 180.0);
   EXPECT_NEAR(shear_of_plate(0.0, 1300.0), 1300.0 * 0.005 + 10.0 * tan_phi, 0.3) << "no tread";
   EXPECT_NEAR(shear_of_plate(0.002, 1300.0), 10.0 * 0.8, 0.3) << "rubber on top of the soil";
-  EXPECT_NEAR(shear_of_plate(0.002, 0.0), 10.0 * tan_phi, 0.3) << "the soil gives way first";
+  EXPECT_NEAR(shear_of_plate(0.002, 0.0), 10.0 * tan_phi, 0.3) << "the soil yields first";
 }
 
 TEST(SoilDigging, APlateThatDoesNotSlipDigsNothing) {
