@@ -65,23 +65,19 @@ double fit_slip_layer(DigTest test, double raised_m3, const TaskProgress& progre
   return best;
 }
 
-/// "gravel, slip_bearing 1 (fitted to particles as a layer), slip_carry 0.66 (...)"
+/// "cmu_2022, slip_bearing 0.283 (fitted to wheels, 0.26 to 0.31), slip_carry 0.66 (assumed, 0 to
+/// 1)"; of a soil that has no such name, or is changed, its name.
 std::string how_well_known(const SoilParameters& soil) {
   const SlipEvidence* const evidence = slip_evidence(soil.name);
   if (evidence == nullptr) return soil.name;
-  const SoilParameters& named = soil_preset(soil.name);
-  const auto describe = [](const char* key, double value, double of_name, std::string_view source,
+  const auto describe = [](const char* key, double value, std::string_view source,
                            const std::array<double, 2>& range) {
-    const std::string known = value != of_name ? "given"
-                                               : std::string(source) + ", " + shortest(range[0]) +
-                                                     " to " + shortest(range[1]);
-    return std::string(", ") + key + " " + shortest(value) + " (" + known + ")";
+    return std::string(", ") + key + " " + shortest(value) + " (" + std::string(source) + ", " +
+           shortest(range[0]) + " to " + shortest(range[1]) + ")";
   };
   return soil.name +
-         describe("slip_bearing", soil.slip_bearing, named.slip_bearing, evidence->bearing,
-                  evidence->bearing_range) +
-         describe("slip_carry", soil.slip_carry, named.slip_carry, evidence->carry,
-                  evidence->carry_range);
+         describe("slip_bearing", soil.slip_bearing, evidence->bearing, evidence->bearing_range) +
+         describe("slip_carry", soil.slip_carry, evidence->carry, evidence->carry_range);
 }
 
 SoilReport run_dig(DigArguments a) {

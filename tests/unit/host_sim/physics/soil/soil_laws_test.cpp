@@ -183,6 +183,18 @@ TEST(SlipBearingTest, FallsFromAllToItsShareWithTheRatioOfBothSpeeds) {
   EXPECT_EQ(slip_flow(1.0, 5e-5), 0.0) << "what trembles does not flow";
 }
 
+TEST(SlipEvidence, EverySoilLiesInItsRange) {
+  for (const SoilPreset& preset : soil_presets()) {
+    const SlipEvidence& known = *slip_evidence(preset.soil.name);
+    EXPECT_GE(preset.soil.slip_bearing, known.bearing_range[0]) << preset.soil.name;
+    EXPECT_LE(preset.soil.slip_bearing, known.bearing_range[1]) << preset.soil.name;
+    EXPECT_GE(preset.soil.slip_carry, known.carry_range[0]) << preset.soil.name;
+    EXPECT_LE(preset.soil.slip_carry, known.carry_range[1]) << preset.soil.name;
+    EXPECT_FALSE(known.bearing.empty() || known.carry.empty()) << preset.soil.name;
+  }
+  EXPECT_EQ(slip_evidence("viper, changed"), nullptr);
+}
+
 TEST(PassivePressureTest, AtThirtyDegreesIsTwelveHalvesOfTheWeight) {
   SoilParameters soil;
   soil.friction_deg = 30.0;
