@@ -150,7 +150,7 @@ void check(const DigTest& test) {
   check_range("dig", "slip", test.slip, 0.05, 0.99);
   check_range("dig", "lug height", test.lug_height_m, 0.0, 0.1);
   if (test.slope_deg > 0.0 && test.manoeuvre == Manoeuvre::kCharge) {
-    throw InputError("dig: slope = " + shortest(test.slope_deg) + ", which a charge has not");
+    throw InputError("dig: slope = " + shortest(test.slope_deg) + "; a charge is on level ground");
   }
 }
 

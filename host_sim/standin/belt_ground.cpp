@@ -280,7 +280,7 @@ void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::siz
 
 void BeltGround::keep_support(const TrackPlane& plane, Stance& stance) const {
   BeltSupport& support = stance.support;
-  support = {plane.forward, plane.left, {}, {}, {}, {}, {1.0, 1.0}};
+  support = {plane.forward, plane.left};
   const double half_cell = 0.5 * surface().spacing_m();
   double sum = 0.0;
   for (const std::size_t side : {0U, 1U}) {

@@ -4,8 +4,8 @@
 // The laws are those of the physics (host_sim/physics/soil), for a belt as a whole where the
 // physics has them for each of its cells, and without dynamics:
 //   a robot stands where Bekker's pressures below its belts support its weight;
-//   cells below them are compacted to the belts' depth, what leaves them is laid down beside and
-//   ahead (MaterialFlow::deposit);
+//   cells below them are compacted to the belts' depth, what leaves them is laid down beside
+//   (MaterialFlow::deposit);
 //   slip digs: volume = layer slip width, carried down the slope and with the belt
 //   (soil_reaction.cpp, Digging);
 //   slopes above the angle of repose slide.

@@ -24,6 +24,9 @@
 // the running surface (shear_field.h); it acts at the centre of pressure. A surface has a friction
 // and adhesion of its own: where it holds less than the soil, it slips on the soil.
 //   strength = min(c share + damped tan phi, adhesion share + damped friction)
+// Lugs hold as the soil does as far as they are in it, the rest of the surface by its friction:
+//   filled   = min(1, depth / lug height)             depth: mean of the last step, as below
+//   adhesion = filled c,   friction = filled tan phi + (1 - filled) the surface's own
 //
 // Forces. Radial normal stress is along the surface's normal (slope_x, slope_y, 1), whose length is
 // `steep`; vertical stress is straight up and shears in the horizontal.
@@ -91,8 +94,7 @@ void SoilBed::dig_below(const ReactionSums& sums, const ReactionLaw& law,
   patch.half_width = half_side(sums.sum_across_squared, across);
   patch.band = 2.0 * std::min(patch.half_length, patch.half_width);
   const double layer =
-      std::max(soil_.slip_layer_m,
-               std::min(contact.motion.lug_height_m, std::max(0.0, sums.depth * per_share)));
+      std::max(soil_.slip_layer_m, std::min(contact.motion.lug_height_m, contact.memory->depth));
   const double volume = layer * dt * per_share * 2.0 * sums.slip * patch.half_width;
   dig_remainder_ += volume / (cell_area_ * kHeightUnit_m);
   const Eigen::Vector3d normal = vector(law.axis_x).cross(vector(law.axis_y));
@@ -163,7 +165,8 @@ ReactionLaw SoilBed::reaction_law(const Range& range, const PressingBody& body,
   if (contact.motion.lug_height_m > 0.0) {
     const double filled = std::min(1.0, memory.depth / contact.motion.lug_height_m);
     law.adhesion = filled * soil_.cohesion_pa;
-    law.surface_friction = filled * tan_friction_ + (1.0 - filled) * contact.motion.friction;
+    const double own = std::min(contact.motion.soil_friction, contact.motion.friction);
+    law.surface_friction = filled * tan_friction_ + (1.0 - filled) * own;
   }
   law.axis_x = triple(frame.axes.col(0));
   law.axis_y = triple(left);
@@ -234,9 +237,9 @@ void SoilBed::react(const Range& range, const PressingBody& body, FootprintConta
   flow_.begin_footprint(
       {velocity.head<2>(), vector(law.level_ahead).head<2>(), contact.memory->patch_b_m});
   settle(range, slips);
-  if (slips) dig_below(sums, law, contact, dt);
   contact.memory->sinkage = sums.sinkage;
   contact.memory->depth = sums.area > 0.0 ? std::max(0.0, sums.depth / sums.area) : 0.0;
+  if (slips) dig_below(sums, law, contact, dt);
   TerrainReaction& reaction = contact.reaction;
   reaction.force = vector(sums.force);
   reaction.torque = vector(sums.torque);

@@ -35,7 +35,7 @@ Manoeuvre manoeuvre_named(const std::string& name) {
   throw InputError("dig: manoeuvre = " + name + "; allowed is spin, charge, slip or strokes");
 }
 
-/// The drag depth with which the robot raises so much, to 0.1 mm: the nearest of a row, then
+/// The slip layer with which the robot raises so much, to 0.1 mm: the nearest of a row, then
 /// between its neighbours.
 double fit_slip_layer(DigTest test, double raised_m3, const TaskProgress& progress) {
   constexpr double kMaxDrives = 34.0;
@@ -43,7 +43,7 @@ double fit_slip_layer(DigTest test, double raised_m3, const TaskProgress& progre
   const auto miss = [&](double slip_layer_m) {
     test.soil.slip_layer_m = slip_layer_m;
     const TaskProgress of_drive = [&](std::string_view /*digging*/, double share) {
-      report_progress(progress, "fitting the drag depth", (drives + share) / kMaxDrives);
+      report_progress(progress, "fitting the slip layer", (drives + share) / kMaxDrives);
     };
     const double error = std::abs(dig_soil(test, of_drive).raised_m3 - raised_m3);
     ++drives;

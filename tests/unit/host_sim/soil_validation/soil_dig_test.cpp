@@ -44,7 +44,7 @@ void expect_sunk(double factor, const OnParticles& particles, const DigResult& s
   EXPECT_LT(soil.sunk_m3 * 1e6, particles.sunk_at_least * factor);
 }
 
-// Gravel's drag depth and compaction were fitted to the spin. The other two are to be within a
+// Gravel's slip layer and compaction were fitted to the spin. The other two are to be within a
 // factor of 1.5. On the mound soil moves too little (docs/studies/soil.md says so and why): no
 // less than it does.
 TEST(SoilDigTest, MovesAsMuchAsAmongParticles) {

@@ -268,7 +268,7 @@ TEST(SoilDigging, LugsTakeNoMoreThanTheyHaveSunkInto) {
   EXPECT_LT(deep, 2.0 * shallow);
 }
 
-// Drags a plate sideways that has sunk by some 10 um, under 2 kPa.
+/// What holds a plate back that has sunk by some 10 um under 2 kPa and is dragged on, N.
 double shear_of_plate(double lug_height_m, double cohesion_pa) {
   SoilParameters soil = soil_preset("lete_sand");
   soil.cohesion_pa = cohesion_pa;
