@@ -70,8 +70,7 @@ struct alignas(64) CellBlock {
   // Asked for:
   double x[kLanes];  ///< centre
   double y[kLanes];
-  double spread_x[kLanes];        ///< -1, 1: of the cell's lattice; 0: all points in the centre
-  double spread_y[kLanes];        ///< 1; 0
+  double mirrored[kLanes];        ///< -1, 1: of the cell's lattice along x
   double active[kLanes];          ///< 1; 0: no cell. Out: 1 where it carries.
   double reference[kLanes];       ///< level of the undisturbed surface
   double sunk[kLanes];            ///< plastic sinkage
@@ -100,6 +99,10 @@ struct alignas(64) CellBlock {
   double arm_y[kLanes];
   double arm_z[kLanes];
   double depth[kLanes];  ///< of the body below the undisturbed surface, mean over the touching part
+  // By shear_cells:
+  double shear_along[kLanes];  ///< mobilised share of the strength, 0 to 1, signed
+  double shear_across[kLanes];
+  double sliding[kLanes];  ///< of the surface over the soil, m/s
   // By react:
   double units[kLanes];   ///< sunk in this step, whole units of height
   double bears[kLanes];   ///< 1 where there is still pressure
@@ -240,7 +243,7 @@ struct ShearStep {
   bool level;
 };
 
-/// What react looks up in a shear field.
+/// What cells look up in a shear field.
 struct ShearView {
   bool touching = false;
   ShearPlaces places{};
@@ -355,8 +358,9 @@ struct Kernels {
                        const CellLaw& law, SpringBlock* springs, CellSums& sums);
   /// StressShape's lift at one sine of an angle, m.
   double (*stress_lift)(const StressShape& shape, double sine);
-  /// What slip takes from the bearing of cells.
-  void (*weaken)(CellBlock* cells, SpringBlock* springs, size_t blocks, const ReactionLaw& law);
+  /// Shear of cells, and what slip takes from their bearing.
+  void (*shear_cells)(CellBlock* cells, SpringBlock* springs, size_t blocks,
+                      const ReactionLaw& law);
   /// `damped`: springs have dampers.
   void (*spring_sums)(const SpringBlock* springs, size_t blocks, const Tilt& moved, bool damped,
                       SpringSums& sums);

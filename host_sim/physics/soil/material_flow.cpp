@@ -83,8 +83,10 @@ void MaterialFlow::dig(const DugPatch& patch, int64_t units, double share_of_pre
   }
   const int64_t pressed_moved = moved;
   double total = 0.0;
-  for (const Sheared& here : sheared_) total += here.weight;
-  if (total > 0.0 && units > 0) {
+  if (units > 0) {
+    for (const Sheared& here : sheared_) total += here.weight;
+  }
+  if (total > 0.0) {
     const double per_weight = static_cast<double>(units) / total;
     double passed = 0.0;
     int64_t taken = 0;
@@ -367,6 +369,7 @@ void MaterialFlow::release_held() {
     cell.held = false;
     enqueue(here.node);
   }
+  held_list_.clear();
 }
 
 /// Whether a slope beside a node that is not at the border is too steep.

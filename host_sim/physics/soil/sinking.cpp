@@ -81,8 +81,8 @@ void extend_path(const Footprint& footprint, const Eigen::Vector3d& displacement
 //
 //   q        = (up, roll, pitch), displacement in this step, m, rad, about the world's x and y
 //   d_i      = -(q0 + q1 y_i - q2 x_i)                downward displacement at spring i, m
-//   f_i      = max(0, min(elastic + elastic_slope d_i, virgin + virgin_slope d_i))
-//              + damper max(0, d_i)
+//   f_i      = max(0, min(elastic + elastic_slope d_i, virgin + virgin_slope d_i,
+//                         flowing + flowing_slope max(0, d_i))) + damper max(0, d_i)
 //   external = gravity at first contact, then (rate - memory.rate) / dt - memory.soil_acceleration
 //   q_free   = dt rate + dt^2 external                where the body goes without soil
 // Wanted: M / dt^2 (q - q_free) = sum of f_i (1, y_i, -x_i), the minimum of a convex energy. Yaw is

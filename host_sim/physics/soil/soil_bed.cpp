@@ -107,10 +107,8 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
     advance_shear(range, body, contact, dt);
     if (!range.touching) continue;
     ranges_.back().reaction = reaction_law(range, body, contact, dt);
-    if (soil_.slip_bearing < 1.0) {
-      kernels_.weaken(&cells_[range.begin], &springs_[range.begin], range.end - range.begin,
-                      ranges_.back().reaction);
-    }
+    kernels_.shear_cells(&cells_[range.begin], &springs_[range.begin], range.end - range.begin,
+                         ranges_.back().reaction);
   }
   if (!touching) {
     memory = {};

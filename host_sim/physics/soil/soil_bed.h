@@ -97,10 +97,9 @@ class SoilBed final : public Terrain {
     std::vector<double> x;
     std::vector<double> y;
   };
-  struct Row {  // candidates of one row of the grid, west to east
-    int iy;
-    int first_ix;
-    int end_ix;
+  struct Run {  // candidates that follow each other in a row of the grid, west to east
+    GridNode first;
+    size_t count;
   };
   struct Group {  // blocks of cells with the same lattice
     Lattice lattice;
@@ -127,7 +126,7 @@ class SoilBed final : public Terrain {
   Law law_below(const FootprintContact& contact, const RunFrame& frame, double elastic,
                 double dt) const;
   void find_candidates(const Footprint& footprint, const PathHistory& path, double rebound_m);
-  bool find_rows(const Footprint& footprint, double highest);
+  bool find_runs(const Footprint& footprint, double highest);
   void drop_cells_below(const Footprint& footprint, double rebound_m);
   void classify(const Footprint& footprint, double rebound_m);
   Lattice lattice_of_corner(size_t candidate, double highest_surface, double rim) const;
@@ -162,7 +161,7 @@ class SoilBed final : public Terrain {
   PassivePressure passive_;
 
   // Of the footprint being pressed; kept for their room.
-  std::vector<Row> rows_;
+  std::vector<Run> runs_;
   FootprintSamples candidate_points_;  // one a cell, its centre
   std::vector<Height> candidate_heights_;
   std::vector<uint8_t> flat_bits_;  // of candidates, a byte a block of lanes

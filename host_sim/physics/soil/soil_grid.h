@@ -44,7 +44,7 @@ struct SinkageDivision {
 class CellHistory {
  public:
   /// Whether a body that stands on the cell in step `now` was not there in the step before.
-  bool is_contact_new(uint32_t now) const { return step_ == 0 || step_ + 1 < now; }
+  bool is_contact_new(uint32_t now) const { return now - step_ > 1; }
 
   /// The division once the body covers `covered`, 0..1, in step `now`, of a cell that has sunk by
   /// `sunk`, m. Changes nothing.
@@ -77,10 +77,11 @@ class CellHistory {
   /// The body presses on the cell in step `now`, counted from 1.
   void touch(uint32_t now) { step_ = now; }
   /// It does not: the next contact is a new one, and finds what this one left.
-  void release() { step_ = 0; }
+  void release() { step_ = kNever; }
 
  private:
-  uint32_t step_ = 0;  // of the last contact; 0: there is none to go on with
+  static constexpr uint32_t kNever = 1U << 31U;  // far from any step, forwards and backwards
+  uint32_t step_ = kNever;  // of the last contact; kNever: there is none to go on with
   float covered_ = 0.0F;
   float old_sinkage_ = 0.0F;
   float beside_ = 0.0F;
@@ -113,6 +114,8 @@ struct GridNode {
   size_t node;
   int ix;
   int iy;
+  /// Further along in the same row; not across the seam.
+  GridNode eastward(size_t cells) const { return {node + cells, ix + static_cast<int>(cells), iy}; }
 };
 
 class SoilGrid {
@@ -170,7 +173,7 @@ class SoilGrid {
   void each_run(int iy, int first_ix, int end_ix, const Run& run) const {
     for (int ix = first_ix; ix < end_ix;) {
       const size_t first = node(ix, iy);
-      const int left_in_row = surface_.nx() - column(first);
+      const int left_in_row = surface_.nx() - (ix >= 0 && ix < surface_.nx() ? ix : column(first));
       const int length = end_ix - ix < left_in_row ? end_ix - ix : left_in_row;
       run(first, ix, static_cast<size_t>(length));
       ix += length;
