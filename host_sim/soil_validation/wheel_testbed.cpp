@@ -4,15 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "host_sim/core/elementary.h"
+#include "host_sim/core/errors.h"
 #include "host_sim/core/rotation.h"
+#include "host_sim/physics/particles/particle_bed.h"
 #include "host_sim/soil_validation/check_range.h"
 
 namespace screed {
 namespace {
 
-constexpr double kMargin_m = 0.03;  // of soil on each side of the track, and beyond its ends
+// Of ground on each side of the track, and beyond its ends; particles feel their walls further.
+constexpr double kMargin_m = 0.03;
+constexpr double kParticleMargin_m = 0.1;
 
 void check(const WheelTest& test) {
   check_range("wheel", "mass", test.mass_kg, 1e-4, 1e4);
@@ -27,13 +32,15 @@ void check(const WheelTest& test) {
   check_range("wheel", "slip", test.wheel.slip, -1.0, 0.99);
   check_range("wheel", "belt", test.belt_m, 0.0, 10.0);
   check_range("wheel", "lug height", test.lug_height_m, 0.0, 0.1);
+  check_range("wheel", "depth", test.depth_m, 0.02, 1.0);
 }
 
 /// A bed under what is so long along the track and so wide across it, its middle in the middle;
 /// square to the grid's axes, whatever the track's yaw.
 HeightField bed_under(const WheelTest& test, double along, double across) {
-  const double length = along + test.belt_m + 2.0 * (test.wheel.radius_m + kMargin_m);
-  const double width = across + test.wheel.width_m + 2.0 * (kMargin_m + std::abs(test.offset_m));
+  const double margin = test.particle ? kParticleMargin_m : kMargin_m;
+  const double length = along + test.belt_m + 2.0 * (test.wheel.radius_m + margin);
+  const double width = across + test.wheel.width_m + 2.0 * (margin + std::abs(test.offset_m));
   const double cos = std::abs(portable::cos(test.yaw_rad));
   const double sin = std::abs(portable::sin(test.yaw_rad));
   const auto nodes = [&](double extent) {
@@ -42,18 +49,44 @@ HeightField bed_under(const WheelTest& test, double along, double across) {
   return {nodes(length * cos + width * sin), nodes(length * sin + width * cos), test.cell_m, false};
 }
 
+double step_of(const WheelTest& test) {
+  if (!test.particle) return test.step_s;
+  return std::min(test.step_s, SphereLaw::longest_step_s(*test.particle));
+}
+
+std::unique_ptr<Terrain> ground_of(const WheelTest& test, HeightField level) {
+  if (!test.particle) return std::make_unique<SoilBed>(std::move(level), test.soil, test.options);
+  for (int iy = 0; iy < level.ny(); ++iy) {
+    for (int ix = 0; ix < level.nx(); ++ix)
+      level.set_node(ix, iy, static_cast<Height>(std::lround(test.depth_m / kHeightUnit_m)));
+  }
+  ParticleOptions options;
+  options.material = *test.particle;
+  options.ray_spacing_m = test.cell_m;
+  options.seed = test.seed;
+  return std::make_unique<ParticleBed>(level, options);
+}
+
 /// A drive over a bed; places in the track's axes.
 class Drive {
  public:
-  Drive(const WheelTest& test, SoilBed& bed, const Eigen::Vector2d& start)
+  Drive(const WheelTest& test, Terrain& bed, const Eigen::Vector2d& start)
       : test_(test),
         bed_(bed),
+        step_s_(step_of(test)),
         wheel_(Footprint::track(0.5 * test.belt_m, test.wheel.radius_m, test.wheel.width_m)),
         axes_(rotation_about(Eigen::Vector3d::UnitZ(), test.yaw_rad).toRotationMatrix()),
         place_(start) {
     constexpr double kGap_m = 1e-4;
     height_ = ground() + test.wheel.radius_m + kGap_m;
-    motion_.mass_kg = test.mass_kg;
+    if (test.particle) {
+      const HeightField& surface = bed.surface();
+      level_ = static_cast<double>(surface.height_sum()) * kHeightUnit_m /
+               (static_cast<double>(surface.nx()) * surface.ny());
+      height_ = level_ + test.wheel.radius_m + test.particle->radius_m;
+      motion_.friction = std::min(test.wheel.friction, test.particle->friction);
+    }
+    body_.mass_kg = test.mass_kg;
     motion_.soil_friction = test.wheel.friction;
     motion_.adhesion_pa = test.wheel.adhesion_pa;
     motion_.lug_height_m = test.lug_height_m;
@@ -65,17 +98,20 @@ class Drive {
     pose.linear() = axes_;
     pose.translation() = axes_ * Eigen::Vector3d(place_.x(), test_.offset_m + place_.y(), height_);
     wheel_.set_pose(pose);
-    motion_.velocity = axes_ * Eigen::Vector3d(motion.ahead, motion.left, rising_);
+    body_.centre = pose.translation();
+    body_.velocity = motion_.velocity = axes_ * Eigen::Vector3d(motion.ahead, motion.left, rising_);
     motion_.surface_speed = motion.rim;
     motion_.slip = signed_slip(motion.rim, motion.ahead);
-    TerrainReaction reaction = bed_.press(wheel_, motion_, test_.step_s, memory_);
-    bed_.end_step();
+    FootprintContact contact{&wheel_, &memory_, motion_};
+    bed_.press(body_, {&contact, 1}, step_s_, memory_.alone);
+    bed_.end_step(step_s_);
+    TerrainReaction& reaction = contact.reaction;
     reaction.force = axes_.transpose() * reaction.force;
     reaction.torque = axes_.transpose() * reaction.torque;
-    sinkage_ = test_.wheel.radius_m - height_;
-    rising_ += test_.step_s * (reaction.force.z() - test_.wheel.load_n) / test_.mass_kg;
-    height_ += test_.step_s * rising_;
-    place_ += test_.step_s * Eigen::Vector2d(motion.ahead, motion.left);
+    sinkage_ = level_ + test_.wheel.radius_m - height_;
+    rising_ += step_s_ * (reaction.force.z() - test_.wheel.load_n) / test_.mass_kg;
+    height_ += step_s_ * rising_;
+    place_ += step_s_ * Eigen::Vector2d(motion.ahead, motion.left);
     return reaction;
   }
   /// Of the wheel's lowest point below the untouched level, when the last step began, m.
@@ -89,12 +125,15 @@ class Drive {
 
  private:
   const WheelTest& test_;
-  SoilBed& bed_;
+  Terrain& bed_;
+  double step_s_;
   Footprint wheel_;
   Eigen::Matrix3d axes_;
   ContactMemory memory_;
+  PressingBody body_;
   FootprintMotion motion_;
   Eigen::Vector2d place_;  // of the axle from the track's middle
+  double level_ = 0.0;     // of the untouched ground
   double height_ = 0.0;
   double rising_ = 0.0;
   double sinkage_ = 0.0;
@@ -150,6 +189,7 @@ WheelPass roll(const WheelTest& test, SoilBed& bed, int after) {
 
 WheelTestResult run_wheel(const WheelTest& test) {
   check(test);
+  if (test.particle) throw InputError("wheel: on particles it moves by transients or a schedule");
   const double along = test.speed_m_per_s * test.duration_s;
   const double longest = along + 4.0 * test.wheel.radius_m * (test.passes - 1);
   const double across = std::abs(portable::tan(test.wheel.slip_angle_rad)) *
@@ -165,25 +205,26 @@ WheelScheduleResult run_wheel(const WheelTest& test, const WheelSchedule& schedu
                               double interval_s) {
   check(test);
   check_range("wheel", "interval", interval_s, test.step_s, 3600.0);
+  const double step_s = step_of(test);
   // Before the schedule begins.
   constexpr double kStanding_s = 2.0;
   const WheelMotion first = schedule.at(0.0);
   const double speed = portable::hypot(first.ahead, first.left);
   const auto lead = static_cast<int>(
-      (speed > 1e-4 ? (test.belt_m + 3.0 * test.wheel.radius_m) / speed : kStanding_s) /
-      test.step_s);
-  const auto steps = static_cast<int>(std::lround(schedule.duration_s() / test.step_s));
+      (speed > 1e-4 ? (test.belt_m + 3.0 * test.wheel.radius_m) / speed : kStanding_s) / step_s);
+  const auto steps = static_cast<int>(std::lround(schedule.duration_s() / step_s));
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
   Eigen::AlignedBox2d box(place);
-  const auto motion_of = [&](int i) { return schedule.at(std::max(0, i) * test.step_s); };
+  const auto motion_of = [&](int i) { return schedule.at(std::max(0, i) * step_s); };
   for (int i = -lead; i < steps; ++i) {
     const WheelMotion motion = motion_of(i);
-    place += test.step_s * Eigen::Vector2d(motion.ahead, motion.left);
+    place += step_s * Eigen::Vector2d(motion.ahead, motion.left);
     box.extend(place);
   }
-  SoilBed bed(bed_under(test, box.sizes().x(), box.sizes().y()), test.soil, test.options);
-  Drive drive(test, bed, -box.center());
-  const int every = std::max(1, static_cast<int>(std::lround(interval_s / test.step_s)));
+  const std::unique_ptr<Terrain> bed =
+      ground_of(test, bed_under(test, box.sizes().x(), box.sizes().y()));
+  Drive drive(test, *bed, -box.center());
+  const int every = std::max(1, static_cast<int>(std::lround(interval_s / step_s)));
   WheelScheduleResult result;
   WheelSample now;
   for (int i = -lead; i <= steps; ++i) {
@@ -194,12 +235,12 @@ WheelScheduleResult run_wheel(const WheelTest& test, const WheelSchedule& schedu
     now.drawbar_pull_n = reaction.force.x();
     now.side_force_n = reaction.force.y();
     if (i % every == 0) result.samples.push_back(now);
-    now.time_s += test.step_s;
-    now.travel_m += test.step_s * motion.ahead;
-    now.side_path_m += test.step_s * motion.left;
-    now.slip_path_m += test.step_s * (motion.rim - motion.ahead);
+    now.time_s += step_s;
+    now.travel_m += step_s * motion.ahead;
+    now.side_path_m += step_s * motion.left;
+    now.slip_path_m += step_s * (motion.rim - motion.ahead);
   }
-  result.balance = bed.balance();
+  result.balance = bed->balance();
   return result;
 }
 

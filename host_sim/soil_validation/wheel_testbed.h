@@ -1,9 +1,12 @@
-// A wheel on a soil bed in a single-wheel testbed: its travel and spin are imposed, and it is free
-// up and down.
+// A wheel on soil, or on a bed of particles, in a single-wheel testbed: its travel and spin are
+// imposed, and it is free up and down.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "host_sim/physics/particles/sphere_law.h"
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/soil_validation/wheel_limit.h"
@@ -25,6 +28,10 @@ struct WheelTest {
   int passes = 1;               ///< over the same track in the same direction, 1..100
   double belt_m = 0.0;          ///< between the axles of a belt, kept level, 0..10; 0: a wheel
   double lug_height_m = 0.0;    ///< footprint_contact.h, 0..0.1
+
+  std::optional<ParticleMaterial> particle;  ///< what the ground is made of in place of soil
+  double depth_m = 0.1;                      ///< of the bed of particles, 0.02..1
+  uint64_t seed = 1;                         ///< of their layout
 };
 
 /// Means over the second half of a pass.
@@ -44,11 +51,12 @@ struct WheelTestResult {
   HeightField surface;  ///< afterwards
 };
 
-/// Throws InputError for figures out of range.
+/// On soil. Throws InputError for figures out of range.
 WheelTestResult run_wheel(const WheelTest& test);
 
 /// The wheel moves as a schedule says, after it has rolled in the schedule's first motion; a sample
-/// every `interval_s`. The test's slip, slip angle, speed, duration and passes do not count.
+/// every `interval_s`. On soil, or on particles: the step is then at most as long as they allow, and
+/// sinkage counts from the mean height of their surface. The test's slip, slip angle, speed, duration and passes do not count.
 struct WheelScheduleResult {
   std::vector<WheelSample> samples;
   VolumeBalance balance;

@@ -89,6 +89,9 @@ TEST_F(Program, SoilWheelStepsItsSlipOrFollowsASchedule) {
   EXPECT_TRUE(std::filesystem::exists(root_ / "out" / "soil_schedule_sinkage.svg"));
 
   EXPECT_NE(run("soil wheel --belt 0.1").err.find("--schedule or --rim"), std::string::npos);
+  EXPECT_NE(run("soil wheel --ground particles").err.find("--schedule or --rim"),
+            std::string::npos);
+  EXPECT_NE(run("soil wheel --beds 2").err.find("allowed is scm with one bed"), std::string::npos);
   EXPECT_NE(run("soil wheel --slip-angle 85").err.find("allowed is -80 to 80"), std::string::npos);
   EXPECT_EQ(run("soil wheel --rim 0.1 --limit-only").exit_code, 2);
 }

@@ -148,6 +148,15 @@ void add_soil_options(Command& command, SoilArguments& common, const SoilGridRan
   command.add_flag("--json", common.json, "Print JSON");
 }
 
+void add_particle_options(Command& command, ParticleMaterial& particle, double& depth_m,
+                          uint64_t& seed) {
+  add_number(command, "--particle-radius", particle.radius_m, "Particle radius [m]", {0.002, 0.1});
+  add_number(command, "--particle-friction", particle.friction,
+             "Friction coefficient of the particles", {0.0, 2.0});
+  add_number(command, "--depth", depth_m, "Depth of the particle bed [m]", {0.02, 1.0});
+  add_number(command, "--seed", seed, "Seed of the particle layout", kSeedRange);
+}
+
 Json soil_json(const SoilArguments& common) {
   const SoilParameters soil = common.soil();
   Json json = {{"name", soil.name},

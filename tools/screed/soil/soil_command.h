@@ -10,6 +10,7 @@
 #include "tools/screed/cli/command.h"
 
 #include "host_sim/core/json.h"
+#include "host_sim/physics/particles/sphere_law.h"
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "tools/screed/cli/number_option.h"
@@ -74,6 +75,9 @@ struct SoilGridRanges {
 
 void add_soil_options(Command& command, SoilArguments& arguments,
                       const SoilGridRanges& ranges = {});
+/// Of a bed of particles: what they are made of, its depth, the layout's seed.
+void add_particle_options(Command& command, ParticleMaterial& particle, double& depth_m,
+                          uint64_t& seed);
 Json soil_json(const SoilArguments& arguments);
 /// Prints JSON, members in the order of their names.
 void print_sorted(Json json);

@@ -167,11 +167,7 @@ void register_soil_dig_command(Command& soil, Program& program) {
                    "Manoeuvre: spin, charge (a mound of 20 degrees), slip or strokes")
       ->show_default();
   command->add_option("--ground", a->ground, "Terrain model: scm or particles")->show_default();
-  add_number(*command, "--particle-radius", a->test.particle.radius_m, "Particle radius [m]",
-             {0.002, 0.1});
-  add_number(*command, "--particle-friction", a->test.particle.friction,
-             "Friction coefficient of the particles", {0.0, 2.0});
-  add_number(*command, "--depth", a->test.depth_m, "Depth of the particle bed [m]", {0.02, 1.0});
+  add_particle_options(*command, a->test.particle, a->test.depth_m, a->test.seed);
   add_number(*command, "--size", a->test.size_m, "Side length of the bed [m]", {0.5, 5.0});
   add_number(*command, "--track-speed", a->test.track_m_per_s, "Belt speed [m/s]", {0.01, 1.0});
   add_number(*command, "--duration", a->test.duration_s, "Duration [s]", {0.1, 600.0});
@@ -181,7 +177,6 @@ void register_soil_dig_command(Command& soil, Program& program) {
              "Strokes: time at full speed back [s]", {0.0, 5.0});
   add_number(*command, "--stroke-accel", a->test.stroke_accel_m_per_s2,
              "Strokes: acceleration of the belts into the way ahead [m/s^2]", {0.1, 100.0});
-  add_number(*command, "--seed", a->test.seed, "Seed of the particle layout", kSeedRange);
   add_number(*command, "--slip", a->test.slip, "Slip: of the belts", {0.05, 0.99});
   add_number(*command, "--lug-height", a->test.lug_height_m,
              "Height of the belts' tread, which takes soil along [m] (scm)", {0.0, 0.1});

@@ -202,15 +202,10 @@ void add_match(Command& soil, Program& program) {
       soil, program, "match",
       "Identify the soil parameters of a particle bed: press a plate, drag a block", a, run_match);
   a->test.particle.radius_m = 0.0075;
-  add_number(*command, "--particle-radius", a->test.particle.radius_m, "Particle radius [m]",
-             {0.002, 0.1});
-  add_number(*command, "--particle-friction", a->test.particle.friction,
-             "Friction coefficient of the particles", {0.0, 2.0});
-  add_number(*command, "--depth", a->test.depth_m, "Depth of the particle bed [m]", {0.02, 1.0});
+  add_particle_options(*command, a->test.particle, a->test.depth_m, a->test.seed);
   add_number(*command, "--length", a->test.length_m, "Length of plate and block [m]", {0.02, 0.3});
   add_number(*command, "--width", a->test.width_m, "Width of plate and block [m]", {0.02, 0.3});
   add_number(*command, "--load", a->test.load_pa, "Pressure below the block [Pa]", {100.0, 1e5});
-  add_number(*command, "--seed", a->test.seed, "Seed of the particle layout", kSeedRange);
   add_number(*command, "--beds", a->test.beds, "Number of particle beds to average over", {1, 64});
 }
 

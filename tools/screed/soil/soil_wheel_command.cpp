@@ -35,6 +35,9 @@ struct WheelArguments : SoilArguments {
   std::vector<double> rims_m_per_s;
   std::string series;
   double rim_friction_deg = 90.0;
+  std::string ground = "scm";
+  ParticleMaterial particle;
+  int beds = 1;
 };
 
 /// Chrono's SCM (exact rays) for Ding's wheel: slip, drawbar pull N, sinkage m
@@ -55,6 +58,10 @@ std::string wheel_text(const RollingWheel& wheel) {
 }
 
 std::string wheel_words(const WheelArguments& a) {
+  if (a.test.particle) {
+    return text("particles of radius %g mm, ", a.particle.radius_m * kMilli) +
+           wheel_text(a.test.wheel) + text(", mean of %g beds", a.beds);
+  }
   return a.soil().name + ", " + wheel_text(a.test.wheel) +
          (a.limit_only
               ? ", limit of an infinitely fine grid"
@@ -86,6 +93,31 @@ MeasuredWheel computed_row(const MeasuredWheel& row, const WheelReaction& comput
   return out;
 }
 
+/// A wheel that moves as a schedule says, on each bed: on one, but of particles.
+std::vector<std::vector<WheelSample>> run_beds(WheelTest test, const WheelSchedule& schedule,
+                                               double interval_s, int beds) {
+  std::vector<std::vector<WheelSample>> runs;
+  for (int bed = 0; bed < beds; ++bed) {
+    runs.push_back(run_wheel(test, schedule, interval_s).samples);
+    ++test.seed;
+  }
+  return runs;
+}
+
+/// Sample by sample.
+std::vector<WheelSample> mean_of(const std::vector<std::vector<WheelSample>>& runs) {
+  std::vector<WheelSample> mean = runs.front();
+  const auto count = static_cast<double>(runs.size());
+  for (size_t i = 0; i < mean.size(); ++i) {
+    for (double WheelSample::*figure :
+         {&WheelSample::sinkage_m, &WheelSample::drawbar_pull_n, &WheelSample::side_force_n}) {
+      mean[i].*figure = 0.0;
+      for (const std::vector<WheelSample>& run : runs) mean[i].*figure += run[i].*figure / count;
+    }
+  }
+  return mean;
+}
+
 /// Wheels whose rim goes over to another speed, beside measurements.
 SoilReport run_transients(WheelArguments a, const std::vector<MeasuredTransient>& transients) {
   constexpr double kInterval_s = 0.02;
@@ -100,13 +132,22 @@ SoilReport run_transients(WheelArguments a, const std::vector<MeasuredTransient>
     a.test.wheel.friction = rim.friction;
     a.test.wheel.adhesion_pa = rim.adhesion_pa;
     const WheelSchedule schedule = measured.schedule();
-    const TransientComparison one = {measured, run_wheel(a.test, schedule, kInterval_s).samples};
+    const auto runs = run_beds(a.test, schedule, kInterval_s, a.beds);
+    const TransientComparison one = {measured, mean_of(runs)};
     const std::vector<double> extra = measured.extra_sinkage_m(one.screed);
     for (size_t i = 0; i < extra.size(); ++i) {
-      lines.push_back(
-          {measured.name + text(", slip path %g mm", measured.places[i].slip_path_m * kMilli),
-           "extra_sinkage_mm", extra[i] * kMilli, "%.2f",
-           measured.places[i].extra_sinkage_m * kMilli, SoilLine::Error::kAbsolute});
+      const std::string where =
+          measured.name + text(", slip path %g mm", measured.places[i].slip_path_m * kMilli);
+      lines.push_back({where, "extra_sinkage_mm", extra[i] * kMilli, "%.2f",
+                       measured.places[i].extra_sinkage_m * kMilli, SoilLine::Error::kAbsolute});
+      if (a.beds < 2) continue;
+      double squares = 0.0;
+      for (const auto& run : runs) {
+        const double miss = measured.extra_sinkage_m(run)[i] - extra[i];
+        squares += miss * miss;
+      }
+      lines.push_back({where, "standard_error_mm",
+                       std::sqrt(squares / (a.beds * (a.beds - 1.0))) * kMilli, "%.2f"});
     }
     comparisons.push_back(one);
   }
@@ -179,7 +220,7 @@ SoilReport run_scheduled(const WheelArguments& a) {
   constexpr double kInterval_s = 0.05;
   constexpr size_t kLines = 20;
   const WheelSchedule schedule = read_wheel_schedule(a.schedule);
-  const std::vector<WheelSample> samples = run_wheel(a.test, schedule, kInterval_s).samples;
+  const std::vector<WheelSample> samples = mean_of(run_beds(a.test, schedule, kInterval_s, a.beds));
   if (!a.series.empty()) write_series(a.series, samples);
   if (!a.charts.empty()) write_charts(a, schedule_charts(a.soil().name, samples));
   std::vector<SoilLine> lines;
@@ -233,7 +274,8 @@ SoilReport run_steps_of_slip(const WheelArguments& a) {
           "rolling a wheel");
       const WheelSchedule schedule = step_of_slip(a.test.speed_m_per_s, angle_deg * kDegree, rim,
                                                   kTimeConstant_s, a.test.duration_s);
-      const std::vector<WheelSample> samples = run_wheel(a.test, schedule, kInterval_s).samples;
+      const std::vector<WheelSample> samples =
+          mean_of(run_beds(a.test, schedule, kInterval_s, a.beds));
       const std::string begin = text("%g,", angle_deg) + text("%g,", rim);
       const auto add = [&](const std::string& where, const SteadyWheel& at) {
         csv += begin + where + text(",%.5f", at.sinkage_m) + text(",%.3f", at.drawbar_pull_n) +
@@ -328,6 +370,12 @@ FirstPass roll(const WheelArguments& a, const std::string& place, std::vector<So
 SoilReport run_wheel_command(WheelArguments a) {
   a.set(a.test);
   a.test.yaw_rad = a.yaw_deg * kDegree;
+  if (a.ground == "particles") {
+    a.test.particle = a.particle;
+  } else if (a.ground != "scm" || a.beds != 1) {
+    throw InputError("wheel: --ground " + a.ground + ", --beds " + std::to_string(a.beds) +
+                     "; allowed is scm with one bed, or particles");
+  }
   a.test.wheel.friction = a.rim_friction_deg >= 90.0 ? std::numeric_limits<double>::infinity()
                                                      : portable::tan(a.rim_friction_deg * kDegree);
   if (a.measured_option->given()) {
@@ -338,8 +386,10 @@ SoilReport run_wheel_command(WheelArguments a) {
   }
   if (!a.schedule.empty()) return run_scheduled(a);
   if (!a.rims_m_per_s.empty()) return run_steps_of_slip(a);
-  if (a.test.belt_m > 0.0 || a.test.lug_height_m > 0.0 || !a.series.empty()) {
-    throw InputError("wheel: --belt, --lug-height and --series go with --schedule or --rim");
+  if (a.test.belt_m > 0.0 || a.test.lug_height_m > 0.0 || !a.series.empty() || a.test.particle) {
+    throw InputError(
+        "wheel: --belt, --lug-height, --series and --ground particles go with --schedule or --rim, "
+        "the last also with measured transients");
   }
   for (const double angle : a.slip_angles_deg) {
     if (std::abs(angle) > 80.0) {
@@ -449,6 +499,13 @@ void register_soil_wheel_command(Command& soil, Program& program) {
   command->add_option("--case", a->cases, "Use the rows whose case begins with this text")
       ->show_default()
       ->type_name("CASE");
+  command
+      ->add_option("--ground", a->ground,
+                   "Terrain model: scm, or with transients, --schedule or --rim particles")
+      ->show_default();
+  a->particle.radius_m = 0.006;
+  add_particle_options(*command, a->particle, a->test.depth_m, a->test.seed);
+  add_number(*command, "--beds", a->beds, "Number of particle beds to average over", {1, 64});
   command->add_option("--charts", a->charts, "Output folder for SVG charts")->type_name("FOLDER");
   a->measured_option = measured;
 }

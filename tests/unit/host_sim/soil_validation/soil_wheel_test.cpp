@@ -292,6 +292,40 @@ TEST(SoilWheelTest, StepSizeDoesNotMatterOnStiffSoil) {
 TEST(SoilWheelTest, RefusesWhatMakesNoSense) {
   WheelTest test = wheel_on("viper", 1.0, NormalStress::kRadial, 0.005);
   EXPECT_THROW(run_wheel(test), InputError);
+  test.wheel.slip = 0.2;
+  test.particle = ParticleMaterial{};
+  EXPECT_THROW(run_wheel(test), InputError);
+}
+
+/// Mean pull over the last half of a spinning wheel's way among coarse spheres.
+double pull_among_spheres(double friction, double* sinkage_m = nullptr) {
+  WheelTest test;
+  test.wheel = {.radius_m = 0.058, .width_m = 0.05, .load_n = 24.0, .friction = friction};
+  test.mass_kg = 2.0;
+  test.particle = ParticleMaterial{.radius_m = 0.012};
+  const WheelSchedule schedule = step_of_slip(0.1, 0.0, 0.2, 0.01, 0.6);
+  const std::vector<WheelSample> samples = run_wheel(test, schedule, 0.01).samples;
+  double pull = 0.0;
+  double depth = 0.0;
+  const size_t half = samples.size() / 2;
+  for (size_t i = half; i < samples.size(); ++i) {
+    pull += samples[i].drawbar_pull_n / static_cast<double>(samples.size() - half);
+    depth += samples[i].sinkage_m / static_cast<double>(samples.size() - half);
+  }
+  if (sinkage_m != nullptr) *sinkage_m = depth;
+  return pull;
+}
+
+// Coulomb's law bounds what a rim can pull; without friction it can only be held back.
+TEST(SoilWheelTest, AmongSpheresAWheelPullsByItsFriction) {
+  double sinkage_m = 0.0;
+  const double rough = pull_among_spheres(0.6, &sinkage_m);
+  EXPECT_LT(rough, 0.6 * 24.0);
+  EXPECT_GT(sinkage_m, -0.012) << "it lies on them";
+  EXPECT_LT(sinkage_m, 0.03);
+  const double smooth = pull_among_spheres(0.0);
+  EXPECT_LT(smooth, 0.0);
+  EXPECT_GT(rough, smooth + 0.2 * 24.0);
 }
 
 }  // namespace
