@@ -55,8 +55,9 @@ struct WheelTestResult {
 WheelTestResult run_wheel(const WheelTest& test);
 
 /// The wheel moves as a schedule says, after it has rolled in the schedule's first motion; a sample
-/// every `interval_s`. On soil, or on particles: the step is then at most as long as they allow, and
-/// sinkage counts from the mean height of their surface. The test's slip, slip angle, speed, duration and passes do not count.
+/// every `interval_s`. Among particles the step is at most as long as they allow, and sinkage
+/// counts from the mean height of their surface. The test's slip, slip angle, speed, duration and
+/// passes do not count.
 struct WheelScheduleResult {
   std::vector<WheelSample> samples;
   VolumeBalance balance;
