@@ -15,9 +15,10 @@
 namespace screed {
 namespace {
 
-// Of ground on each side of the track, and beyond its ends; particles feel their walls further.
+// Of ground on each side of the track, and beyond its ends; walls disturb particles further in.
 constexpr double kMargin_m = 0.03;
 constexpr double kParticleMargin_m = 0.1;
+constexpr double kParticleMargin_radii = 8.0;
 
 void check(const WheelTest& test) {
   check_range("wheel", "mass", test.mass_kg, 1e-4, 1e4);
@@ -33,12 +34,17 @@ void check(const WheelTest& test) {
   check_range("wheel", "belt", test.belt_m, 0.0, 10.0);
   check_range("wheel", "lug height", test.lug_height_m, 0.0, 0.1);
   check_range("wheel", "depth", test.depth_m, 0.02, 1.0);
+  if (test.particle && (test.lug_height_m > 0.0 || test.wheel.adhesion_pa > 0.0)) {
+    throw InputError("wheel: lugs and adhesion do nothing to particles");
+  }
 }
 
 /// A bed under what is so long along the track and so wide across it, its middle in the middle;
 /// square to the grid's axes, whatever the track's yaw.
 HeightField bed_under(const WheelTest& test, double along, double across) {
-  const double margin = test.particle ? kParticleMargin_m : kMargin_m;
+  const double margin =
+      test.particle ? std::max(kParticleMargin_m, kParticleMargin_radii * test.particle->radius_m)
+                    : kMargin_m;
   const double length = along + test.belt_m + 2.0 * (test.wheel.radius_m + margin);
   const double width = across + test.wheel.width_m + 2.0 * (margin + std::abs(test.offset_m));
   const double cos = std::abs(portable::cos(test.yaw_rad));
@@ -189,7 +195,7 @@ WheelPass roll(const WheelTest& test, SoilBed& bed, int after) {
 
 WheelTestResult run_wheel(const WheelTest& test) {
   check(test);
-  if (test.particle) throw InputError("wheel: on particles it moves by transients or a schedule");
+  if (test.particle) throw InputError("wheel: particles need a schedule or measured transients");
   const double along = test.speed_m_per_s * test.duration_s;
   const double longest = along + 4.0 * test.wheel.radius_m * (test.passes - 1);
   const double across = std::abs(portable::tan(test.wheel.slip_angle_rad)) *

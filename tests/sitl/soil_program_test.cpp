@@ -88,6 +88,22 @@ TEST_F(Program, SoilWheelStepsItsSlipOrFollowsASchedule) {
   EXPECT_NE(read(root_ / "belt.csv").find("\n1.000,"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(root_ / "out" / "soil_schedule_sinkage.svg"));
 
+  const Result spheres = run(
+      "soil wheel --ground particles --particle-radius 0.012 --beds 2 --speed 0.1 --duration 0.5 "
+      "--rim 0.2 --json");
+  ASSERT_EQ(spheres.exit_code, 0) << spheres.err;
+  const Json among = Json::parse(spheres.out);
+  EXPECT_EQ(among.at("particles").at("beds"), 2);
+  EXPECT_FALSE(among.contains("soil"));
+  write("transient.csv",
+        "case,wheel_radius_m,wheel_width_m,load_n,travel_m_s,rim_m_s,rim_time_constant_s,"
+        "slip_path_m,extra_sinkage_m\nmine,0.03,0.025,3,0.1,0.2,0.05,0.02,0.001\n");
+  const Result measured =
+      run("soil wheel --ground particles --particle-radius 0.012 --beds 2 --case mine --measured "
+          "transient.csv --json");
+  ASSERT_EQ(measured.exit_code, 0) << measured.err;
+  EXPECT_GT(value_of(results_of(measured.out), "mine, slip path 20 mm", "standard_error_mm"), 0.0);
+
   EXPECT_NE(run("soil wheel --belt 0.1").err.find("--schedule or --rim"), std::string::npos);
   EXPECT_NE(run("soil wheel --ground particles").err.find("--schedule or --rim"),
             std::string::npos);

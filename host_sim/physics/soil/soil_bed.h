@@ -97,7 +97,7 @@ class SoilBed final : public Terrain {
     std::vector<double> x;
     std::vector<double> y;
   };
-  struct Run {  // candidates that follow each other in a row of the grid, west to east
+  struct CellRun {  // candidates that follow each other in a row of the grid, west to east
     GridNode first;
     size_t count;
   };
@@ -161,7 +161,7 @@ class SoilBed final : public Terrain {
   PassivePressure passive_;
 
   // Of the footprint being pressed; kept for their room.
-  std::vector<Run> runs_;
+  std::vector<CellRun> runs_;
   FootprintSamples candidate_points_;  // one a cell, its centre
   std::vector<Height> candidate_heights_;
   std::vector<uint8_t> flat_bits_;  // of candidates, a byte a block of lanes

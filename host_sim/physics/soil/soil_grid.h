@@ -80,7 +80,7 @@ class CellHistory {
   void release() { step_ = kNever; }
 
  private:
-  static constexpr uint32_t kNever = 1U << 31U;  // far from any step, forwards and backwards
+  static constexpr uint32_t kNever = 1U << 31U;  // right for 2^31 steps, 24 days at 1 ms
   uint32_t step_ = kNever;  // of the last contact; kNever: there is none to go on with
   float covered_ = 0.0F;
   float old_sinkage_ = 0.0F;
@@ -173,6 +173,7 @@ class SoilGrid {
   void each_run(int iy, int first_ix, int end_ix, const Run& run) const {
     for (int ix = first_ix; ix < end_ix;) {
       const size_t first = node(ix, iy);
+      // A division less where the place is on the field.
       const int left_in_row = surface_.nx() - (ix >= 0 && ix < surface_.nx() ? ix : column(first));
       const int length = end_ix - ix < left_in_row ? end_ix - ix : left_in_row;
       run(first, ix, static_cast<size_t>(length));

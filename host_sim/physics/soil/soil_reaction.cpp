@@ -1,9 +1,9 @@
 // How soil yields under a footprint, and the reaction: plastic sinkage, normal stress, shear, what
 // is pushed ahead and aside, digging.
 //
-// The equations in the order of the code, which is kernels/reaction.inc but for digging. Values of
-// a cell are means over it; E, c, phi, R as in soil_parameters.h, A the area of a cell, v the
-// body's velocity there.
+// The equations of kernels/cell_shear.inc (slip, shear), which comes first, and
+// kernels/reaction.inc (all others but digging). Values of a cell are means over it; E, c, phi, R
+// as in soil_parameters.h, A the area of a cell, v the body's velocity there.
 //
 // Yielding. A body that goes down by `sinking` meets the lower of two lines, unloading and
 // reloading along E and Bekker's curve (Bekker 1969; soil_cells.cpp), linear over a step. What E

@@ -157,6 +157,14 @@ void add_particle_options(Command& command, ParticleMaterial& particle, double& 
   add_number(command, "--seed", seed, "Seed of the particle layout", kSeedRange);
 }
 
+Json particles_json(const ParticleMaterial& particle, double depth_m, uint64_t seed, int beds) {
+  return {{"radius_m", particle.radius_m},
+          {"friction", particle.friction},
+          {"depth_m", depth_m},
+          {"seed", seed},
+          {"beds", beds}};
+}
+
 Json soil_json(const SoilArguments& common) {
   const SoilParameters soil = common.soil();
   Json json = {{"name", soil.name},
@@ -179,7 +187,7 @@ void print_sorted(Json json) {
 int print(const SoilArguments& common, SoilReport report) {
   if (common.json) {
     report.more["test"] = report.test;
-    report.more["soil"] = soil_json(common);
+    if (!report.more.contains("particles")) report.more["soil"] = soil_json(common);
     report.more["results"] = to_json(report.lines);
     print_sorted(std::move(report.more));
   } else {

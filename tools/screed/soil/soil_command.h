@@ -78,6 +78,7 @@ void add_soil_options(Command& command, SoilArguments& arguments,
 /// Of a bed of particles: what they are made of, its depth, the layout's seed.
 void add_particle_options(Command& command, ParticleMaterial& particle, double& depth_m,
                           uint64_t& seed);
+Json particles_json(const ParticleMaterial& particle, double depth_m, uint64_t seed, int beds);
 Json soil_json(const SoilArguments& arguments);
 /// Prints JSON, members in the order of their names.
 void print_sorted(Json json);
@@ -88,7 +89,7 @@ struct SoilReport {
   std::string heading;
   std::string limit_name;  ///< what the column of limits is called
   std::vector<SoilLine> lines;
-  Json more = Json::object();  ///< further members for programs
+  Json more = Json::object();  ///< further members for programs; "particles": there is no soil
   std::string below = "";      ///< text under the table
 };
 /// Prints table or JSON; the exit code.

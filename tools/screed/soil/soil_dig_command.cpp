@@ -136,6 +136,10 @@ SoilReport run_dig(DigArguments a) {
   add("lower_by_mm", result.lower_by_m * kMilli, "%.2f");
   add("pitch_deg", result.pitch_rad * kDegrees, "%.2f");
   if (!particles) add("volume_error", static_cast<double>(result.balance.error()), "%.0f");
+  Json more = Json::object();
+  if (particles) {
+    more["particles"] = particles_json(a.test.particle, a.test.depth_m, a.test.seed, a.test.beds);
+  }
   if (!a.charts.empty()) {
     PictureOptions picture;
     picture.width_px = 800;
@@ -148,7 +152,7 @@ SoilReport run_dig(DigArguments a) {
           (particles ? text("particles of radius %g mm", a.test.particle.radius_m * kMilli)
                      : how_well_known(a.test.soil)) +
               text(", grid %g mm", a.cell_m * kMilli),
-          "must be", lines};
+          "must be", lines, more};
 }
 
 }  // namespace

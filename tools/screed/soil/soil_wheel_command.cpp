@@ -1,4 +1,5 @@
-// `screed soil wheel`: a wheel beside its limit and beside measurements; the limit alone.
+// `screed soil wheel`: a wheel on soil or particles beside its limit and beside measurements; the
+// limit alone.
 
 #include <cmath>
 #include <iostream>
@@ -57,10 +58,19 @@ std::string wheel_text(const RollingWheel& wheel) {
          text(" mm, width %g mm", wheel.width_m * kMilli) + text(", load %g N", wheel.load_n);
 }
 
+std::string ground_name(const WheelArguments& a) {
+  if (!a.test.particle) return a.soil().name;
+  return text("particles of radius %g mm", a.particle.radius_m * kMilli);
+}
+
+Json ground_json(const WheelArguments& a) {
+  if (!a.test.particle) return Json::object();
+  return {{"particles", particles_json(a.particle, a.test.depth_m, a.test.seed, a.beds)}};
+}
+
 std::string wheel_words(const WheelArguments& a) {
   if (a.test.particle) {
-    return text("particles of radius %g mm, ", a.particle.radius_m * kMilli) +
-           wheel_text(a.test.wheel) + text(", mean of %g beds", a.beds);
+    return ground_name(a) + ", " + wheel_text(a.test.wheel) + text(", beds: %g", a.beds);
   }
   return a.soil().name + ", " + wheel_text(a.test.wheel) +
          (a.limit_only
@@ -93,7 +103,8 @@ MeasuredWheel computed_row(const MeasuredWheel& row, const WheelReaction& comput
   return out;
 }
 
-/// A wheel that moves as a schedule says, on each bed: on one, but of particles.
+/// A wheel that moves as a schedule says, once a bed. Beds of particles differ by their seed; of
+/// soil there is one.
 std::vector<std::vector<WheelSample>> run_beds(WheelTest test, const WheelSchedule& schedule,
                                                double interval_s, int beds) {
   std::vector<std::vector<WheelSample>> runs;
@@ -107,6 +118,7 @@ std::vector<std::vector<WheelSample>> run_beds(WheelTest test, const WheelSchedu
 /// Sample by sample.
 std::vector<WheelSample> mean_of(const std::vector<std::vector<WheelSample>>& runs) {
   std::vector<WheelSample> mean = runs.front();
+  if (runs.size() == 1) return mean;
   const auto count = static_cast<double>(runs.size());
   for (size_t i = 0; i < mean.size(); ++i) {
     for (double WheelSample::*figure :
@@ -135,25 +147,26 @@ SoilReport run_transients(WheelArguments a, const std::vector<MeasuredTransient>
     const auto runs = run_beds(a.test, schedule, kInterval_s, a.beds);
     const TransientComparison one = {measured, mean_of(runs)};
     const std::vector<double> extra = measured.extra_sinkage_m(one.screed);
+    std::vector<double> squares(extra.size());  // of what single beds are off
+    for (const auto& run : runs) {
+      const std::vector<double> here = measured.extra_sinkage_m(run);
+      for (size_t i = 0; i < extra.size(); ++i)
+        squares[i] += (here[i] - extra[i]) * (here[i] - extra[i]);
+    }
     for (size_t i = 0; i < extra.size(); ++i) {
       const std::string where =
           measured.name + text(", slip path %g mm", measured.places[i].slip_path_m * kMilli);
       lines.push_back({where, "extra_sinkage_mm", extra[i] * kMilli, "%.2f",
                        measured.places[i].extra_sinkage_m * kMilli, SoilLine::Error::kAbsolute});
       if (a.beds < 2) continue;
-      double squares = 0.0;
-      for (const auto& run : runs) {
-        const double miss = measured.extra_sinkage_m(run)[i] - extra[i];
-        squares += miss * miss;
-      }
       lines.push_back({where, "standard_error_mm",
-                       std::sqrt(squares / (a.beds * (a.beds - 1.0))) * kMilli, "%.2f"});
+                       std::sqrt(squares[i] / (a.beds * (a.beds - 1.0))) * kMilli, "%.2f"});
     }
     comparisons.push_back(one);
   }
   bar.clear();
-  if (!a.charts.empty()) write_charts(a, {transient_chart(a.soil().name, comparisons)});
-  return {"wheel_transient", wheel_words(a), "measured", lines};
+  if (!a.charts.empty()) write_charts(a, {transient_chart(ground_name(a), comparisons)});
+  return {"wheel_transient", wheel_words(a), "measured", lines, ground_json(a)};
 }
 
 SoilReport run_measured(WheelArguments a) {
@@ -222,7 +235,7 @@ SoilReport run_scheduled(const WheelArguments& a) {
   const WheelSchedule schedule = read_wheel_schedule(a.schedule);
   const std::vector<WheelSample> samples = mean_of(run_beds(a.test, schedule, kInterval_s, a.beds));
   if (!a.series.empty()) write_series(a.series, samples);
-  if (!a.charts.empty()) write_charts(a, schedule_charts(a.soil().name, samples));
+  if (!a.charts.empty()) write_charts(a, schedule_charts(ground_name(a), samples));
   std::vector<SoilLine> lines;
   const size_t last = samples.size() - 1;
   const size_t parts = std::max<size_t>(1, std::min(kLines, last));
@@ -234,7 +247,7 @@ SoilReport run_scheduled(const WheelArguments& a) {
     lines.push_back({where, "drawbar_pull_n", at.drawbar_pull_n, "%.3f"});
     lines.push_back({where, "side_force_n", at.side_force_n, "%.3f"});
   }
-  return {"wheel_schedule", wheel_words(a), "", lines};
+  return {"wheel_schedule", wheel_words(a), "", lines, ground_json(a)};
 }
 
 struct SteadyWheel {
@@ -299,7 +312,7 @@ SoilReport run_steps_of_slip(const WheelArguments& a) {
   }
   bar.clear();
   if (!a.series.empty()) write_file(a.series, csv);
-  return {"wheel_step", wheel_words(a), "", lines};
+  return {"wheel_step", wheel_words(a), "", lines, ground_json(a)};
 }
 
 /// Lines of one pass of a wheel beside its limit.
@@ -388,8 +401,8 @@ SoilReport run_wheel_command(WheelArguments a) {
   if (!a.rims_m_per_s.empty()) return run_steps_of_slip(a);
   if (a.test.belt_m > 0.0 || a.test.lug_height_m > 0.0 || !a.series.empty() || a.test.particle) {
     throw InputError(
-        "wheel: --belt, --lug-height, --series and --ground particles go with --schedule or --rim, "
-        "the last also with measured transients");
+        "wheel: --belt, --lug-height and --series need --schedule or --rim; --ground particles "
+        "needs one of them or measured transients");
   }
   for (const double angle : a.slip_angles_deg) {
     if (std::abs(angle) > 80.0) {
@@ -501,7 +514,8 @@ void register_soil_wheel_command(Command& soil, Program& program) {
       ->type_name("CASE");
   command
       ->add_option("--ground", a->ground,
-                   "Terrain model: scm, or with transients, --schedule or --rim particles")
+                   "Terrain model: scm or particles; particles need --schedule, --rim or measured "
+                   "transients")
       ->show_default();
   a->particle.radius_m = 0.006;
   add_particle_options(*command, a->particle, a->test.depth_m, a->test.seed);

@@ -295,6 +295,8 @@ TEST(SoilWheelTest, RefusesWhatMakesNoSense) {
   test.wheel.slip = 0.2;
   test.particle = ParticleMaterial{};
   EXPECT_THROW(run_wheel(test), InputError);
+  test.lug_height_m = 0.005;
+  EXPECT_THROW(run_wheel(test, step_of_slip(0.1, 0.0, 0.2, 0.01, 0.6), 0.01), InputError);
 }
 
 /// Mean pull over the last half of a spinning wheel's way among coarse spheres.

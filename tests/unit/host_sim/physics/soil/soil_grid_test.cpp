@@ -233,6 +233,21 @@ TEST(SoilCells, ABodyAcrossTheSeamOfABedThatRepeatsMeetsTheSame) {
   }
 }
 
+TEST(SoilCells, ABoxAcrossTheSeamOfABedThatRepeatsMeetsTheSame) {
+  Contact box;
+  box.footprint = Footprint::box({0.1, 0.06, 0.02});
+  box.at.z() = 0.01 - 0.003;
+  SoilBed middle = bed_of(true);
+  const Reaction here = press(middle, box);
+  ASSERT_GT(here.force.z(), 1.0);
+  for (const Eigen::Vector2d& seam : {Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(0.0, -1.0)}) {
+    SoilBed bed = bed_of(true);
+    Contact moved = box;
+    moved.at.head<2>() += 0.5 * kNodes * kSpacing_m * seam;
+    expect_alike(here, press(bed, moved), 1e-6, "across the seam");
+  }
+}
+
 TEST(SoilCells, WhatHangsOverTheEdgeMeetsNothingThere) {
   // A plate with one half beyond the last nodes, on each of the four sides.
   for (int side = 0; side < 4; ++side) {
