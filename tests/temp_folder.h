@@ -6,7 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -35,10 +35,12 @@ class TempFolder {
   pid_t owner_ = getpid();
 };
 
-/// All bytes of a file; "" when there is none.
+/// All bytes of a file; "" when there is none. Of one in /proc whose process ends meanwhile, what
+/// could be read: an iterator over the stream would throw.
 inline std::string read_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
 }
 
 inline void write_text(const std::filesystem::path& file, const std::string& text) {
