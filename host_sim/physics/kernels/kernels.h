@@ -70,7 +70,7 @@ struct alignas(64) CellBlock {
   // Asked for:
   double x[kLanes];  ///< centre
   double y[kLanes];
-  double mirrored[kLanes];        ///< -1: its points are mirrored along x; 1. Not of a lone centre.
+  double mirrored[kLanes];        ///< several points: -1: mirrored along x, else 1
   double active[kLanes];          ///< 1; 0: no cell. Out: 1 where it carries.
   double reference[kLanes];       ///< level of the undisturbed surface
   double sunk[kLanes];            ///< plastic sinkage
