@@ -26,19 +26,20 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// One figure of the runs of a course.
 using Figure = std::function<double(std::size_t run)>;
 
-/// When each run's relief was first half of what it began with [s]; NaN: never, or not known.
+/// When each run's height about level was first half of what it began with [s]; NaN: never, or not
+/// known.
 std::vector<double> half_times(std::size_t runs, const ValueTable& curves) {
   const std::vector<double> run_of = curves.numbers("run");
   const std::vector<double> times = curves.numbers("time");
-  const std::vector<double> reliefs = curves.numbers("relief");
+  const std::vector<double> heights = curves.numbers("level_deviation");
   std::vector<double> begin(runs, kNone);
   std::vector<double> half(runs, kNone);
   for (std::size_t row = 0; row < curves.rows(); ++row) {
-    const double relief = reliefs.at(row);
-    if (std::isnan(relief)) continue;
+    const double height = heights.at(row);
+    if (std::isnan(height)) continue;
     const auto run = static_cast<std::size_t>(run_of.at(row));
-    if (std::isnan(begin.at(run))) begin[run] = relief;
-    if (std::isnan(half[run]) && relief <= 0.5 * begin[run]) half[run] = times.at(row);
+    if (std::isnan(begin.at(run))) begin[run] = height;
+    if (std::isnan(half[run]) && height <= 0.5 * begin[run]) half[run] = times.at(row);
   }
   return half;
 }
@@ -71,11 +72,20 @@ std::size_t column_of_entry(const CampaignPlan& plan) {
 std::vector<CourseScore> score_benchmark(const CampaignPlan& plan, const ValueTable& runs,
                                          const ValueTable& curves, const std::string& baseline) {
   const std::size_t entry_column = column_of_entry(plan);
-  const std::vector<double> before = runs.numbers("terrain_before.relief_m");
-  const std::vector<double> after = runs.numbers("terrain_after.relief_m");
-  const std::vector<double> rough_before = runs.numbers("terrain_before.roughness_m");
-  const std::vector<double> rough_after = runs.numbers("terrain_after.roughness_m");
+  const auto change_of = [&](const std::string& figure) {
+    std::vector<double> change = runs.numbers("terrain_after." + figure);
+    const std::vector<double> before = runs.numbers("terrain_before." + figure);
+    for (std::size_t run = 0; run < change.size(); ++run)
+      change[run] = change[run] / before[run] - 1;
+    return change;
+  };
+  const std::vector<double> level = change_of("level_deviation_m");
+  const std::vector<double> relief = change_of("relief_m");
+  const std::vector<double> roughness = change_of("roughness_m");
+  const std::vector<double> height_before = runs.numbers("terrain_before.mean_height_m");
+  const std::vector<double> height_after = runs.numbers("terrain_after.mean_height_m");
   const std::vector<double> progress = runs.numbers("leveling.progress");
+  const std::vector<double> progress_w2 = runs.numbers("leveling.progress_w2");
   const std::vector<double> energy = runs.numbers("energy_j");
   const std::vector<double> per_joule = runs.numbers("leveling.transport_per_joule_m4");
   const std::vector<double> stuck = runs.numbers("leveling.stuck");
@@ -109,26 +119,31 @@ std::vector<CourseScore> score_benchmark(const CampaignPlan& plan, const ValueTa
     const auto compare = [&](const Figure& figure) {
       return compare_cells(values_of(figure), base == end ? 0 : base - first);
     };
-    const Figure change = [&](std::size_t run) { return after.at(run) / before.at(run) - 1.0; };
-    const auto changes = compare(change);
-    const auto rates = compare(
-        [&](std::size_t run) { return -change(run) * kSecondsPerHour / course.duration_s; });
-    const auto roughness =
-        compare([&](std::size_t run) { return rough_after.at(run) / rough_before.at(run) - 1.0; });
-    const auto progresses = compare([&](std::size_t run) { return progress.at(run); });
-    const auto energies = compare([&](std::size_t run) { return energy.at(run); });
+    const auto values = [](const std::vector<double>& of) -> Figure {
+      return [&of](std::size_t run) { return of.at(run); };
+    };
+    const auto levels = compare(values(level));
+    const auto progresses = compare(values(progress));
+    const auto progresses_w2 = compare(values(progress_w2));
+    const auto reliefs = compare(values(relief));
+    const auto roughnesses = compare(values(roughness));
+    const auto heights =
+        compare([&](std::size_t run) { return height_after.at(run) - height_before.at(run); });
+    const auto energies = compare(values(energy));
     const auto useful = compare([&](std::size_t run) { return per_joule.at(run) * kCm3PerM3; });
-    const auto stucks = compare([&](std::size_t run) { return stuck.at(run); });
+    const auto stucks = compare(values(stuck));
     for (std::size_t cell = first; cell < end; ++cell) {
       const std::size_t at = cell - first;
       EntryScore score;
       score.entry = plan.cells[cell][entry_column];
-      score.runs = changes[at].value.count;
+      score.runs = levels[at].value.count;
       score.failed = plan.seed_count() - score.runs;
-      score.relief_change = changes[at].value;
-      score.rate_per_h = rates[at].value;
-      score.roughness_change = roughness[at].value;
+      score.level_change = levels[at].value;
       score.progress = progresses[at].value;
+      score.progress_w2 = progresses_w2[at].value;
+      score.relief_change = reliefs[at].value;
+      score.roughness_change = roughnesses[at].value;
+      score.height_change_m = heights[at].value;
       score.energy_j = energies[at].value;
       score.transport_per_joule = useful[at].value;
       score.stuck = stucks[at].value;
@@ -146,8 +161,8 @@ std::vector<CourseScore> score_benchmark(const CampaignPlan& plan, const ValueTa
         score.half_time_s = reached[(plan.seed_count() - 1) / 2];
       }
       if (base != end && cell != base) {
-        score.against_baseline = changes[at].against_baseline;
-        score.times_baseline = ratio(values_of(change), at, base - first);
+        score.against_baseline = levels[at].against_baseline;
+        score.times_baseline = ratio(values_of(values(progress)), at, base - first);
       }
       course.entries.push_back(std::move(score));
     }

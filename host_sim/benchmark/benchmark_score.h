@@ -21,21 +21,23 @@ struct EntryScore {
   std::string entry;
   std::size_t runs = 0;    ///< with figures
   std::size_t failed = 0;  ///< without
-  SeedMean relief_change;  ///< relief at the end by that at the start, less 1
-  SeedMean rate_per_h;     ///< by how much of the start's the relief falls in an hour
+  SeedMean level_change;   ///< height about level at the end by that at the start, less 1
+  SeedMean progress;       ///< of transport, by W1
+  SeedMean progress_w2;    ///< by W2, not squared
+  SeedMean relief_change;  ///< as level_change
   SeedMean roughness_change;
-  SeedMean progress;             ///< of transport
+  SeedMean height_change_m;      ///< of the mean height: what tracks press together
   SeedMean energy_j;             ///< of all robots
   SeedMean transport_per_joule;  ///< cm3 m/J
   SeedMean stuck;                ///< share of the time
   std::size_t ended_early = 0;   ///< runs with a fault, or that left the bed
-  std::size_t halved = 0;        ///< beds whose relief was half of its start's at some time
+  std::size_t halved = 0;  ///< beds whose height about level was half of its start's at some time
   /// When half of the beds had come to that [s]; NaN: fewer did, or no curves were kept.
   double half_time_s = std::numeric_limits<double>::quiet_NaN();
-  /// Of the relief's change, less the baseline's; nothing for the baseline itself.
+  /// Of level_change, less the baseline's; nothing for the baseline itself.
   std::optional<PairedDifference> against_baseline;
-  /// Mean relief change by the baseline's, with its interval; nothing likewise, and where the
-  /// baseline's change may be none.
+  /// Mean progress by the baseline's, with its interval; nothing likewise, and where the
+  /// baseline's progress may be none.
   std::optional<SeedMean> times_baseline;
 };
 

@@ -84,12 +84,12 @@ class Reader {
     } else if (entry.key == "entry") {
       file_.entry = entry.value;
     } else if (entry.key == "objective") {
-      if (entry.value == "relief") {
-        file_.objective = EvolutionObjective::kRelief;
+      if (entry.value == "level") {
+        file_.objective = EvolutionObjective::kLevel;
       } else if (entry.value == "progress") {
         file_.objective = EvolutionObjective::kProgress;
       } else {
-        refuse(entry, where, "relief or progress");
+        refuse(entry, where, "level or progress");
       }
     } else if (entry.key == "population") {
       take_number(entry, where, 5, 1000, file_.population);
@@ -296,9 +296,9 @@ std::vector<Candidate> finalists_of(const EvolutionFile& file, std::vector<Tried
 }  // namespace
 
 double value_of(const EntryScore& score, EvolutionObjective objective) {
-  constexpr double kFailed = 1.0;  // relief doubled, ground carried the wrong way
+  constexpr double kFailed = 1.0;  // height about level doubled, ground carried the wrong way
   const double value =
-      objective == EvolutionObjective::kRelief ? score.relief_change.mean : -score.progress.mean;
+      objective == EvolutionObjective::kLevel ? score.level_change.mean : -score.progress.mean;
   if (score.failed != 0 || !std::isfinite(value)) return kFailed;
   return value;
 }
@@ -400,14 +400,14 @@ Evolution evolve(const EvolutionFile& file, const Benchmark& benchmark, const Ev
 std::string archive_csv(const EvolutionFile& file, const Evolution& evolution) {
   std::string text = "candidate";
   for (const SearchedParameter& parameter : file.parameters) text += "," + parameter.name;
-  text += ",runs,failed,ended_early,relief_change,progress,energy_j\n";
+  text += ",runs,failed,ended_early,level_change,progress,energy_j\n";
   for (const Candidate& candidate : evolution.archive) {
     text += candidate.name;
     for (const std::int16_t value : candidate.values) text += "," + std::to_string(value);
     const EntryScore& score = candidate.score;
     text += "," + std::to_string(score.runs) + "," + std::to_string(score.failed) + "," +
             std::to_string(score.ended_early);
-    for (const double value : {score.relief_change.mean, score.progress.mean, score.energy_j.mean})
+    for (const double value : {score.level_change.mean, score.progress.mean, score.energy_j.mean})
       text += "," + (std::isfinite(value) ? shortest(value) : std::string());
     text += "\n";
   }

@@ -25,7 +25,7 @@ struct SearchedParameter {
 };
 
 enum class EvolutionObjective : std::uint8_t {
-  kRelief,    ///< relief at the end by that at the start, less 1
+  kLevel,     ///< height about level at the end by that at the start, less 1
   kProgress,  ///< of transport
 };
 
@@ -33,7 +33,7 @@ struct EvolutionFile {
   std::filesystem::path path;
   std::string suite = "single";  ///< of the benchmark; one course
   std::string entry;             ///< whose parameters are searched
-  EvolutionObjective objective = EvolutionObjective::kRelief;
+  EvolutionObjective objective = EvolutionObjective::kLevel;
   std::size_t population = 8;  ///< candidates of a generation, at least 5
   std::size_t generations = 10;
   double sigma = 0.25;  ///< first step, of each parameter's range
@@ -91,7 +91,8 @@ struct Evolution {
   std::optional<std::size_t> best;
 };
 
-/// Of a candidate: the lower the better. One whose runs failed counts as one that raised relief.
+/// Of a candidate: the lower the better. One whose runs failed counts as one that raised the
+/// ground.
 double value_of(const EntryScore& score, EvolutionObjective objective);
 
 /// `told` hears of each generation. Throws InputError when the benchmark has no such suite, entry

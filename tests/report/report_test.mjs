@@ -145,23 +145,24 @@ const tests = {
       (all) => all.map((row) =>
         [row.dataset.name, ...[...row.querySelectorAll('td[data-value]')].map((cell) => Number(cell.dataset.value))]));
     for (const [name, key_, factor] of [['Height deviation (standard)', 'height_deviation_m', 1000],
+      ['Height about level (rms)', 'level_deviation_m', 1000],
       ['Relief at robot scale (rms)', 'relief_m', 1000], ['Flat cells', 'flatness', 100]]) {
       const [, before, after] = rows.find((row) => row[0] === name);
       near(before, factor * summary.terrain_before[key_], `${name} before`);
       near(after, factor * summary.terrain_after[key_], `${name} after`);
     }
-    const { relief_m: before } = summary.terrain_before;
-    const { relief_m: after } = summary.terrain_after;
+    const { level_deviation_m: before } = summary.terrain_before;
+    const { level_deviation_m: after } = summary.terrain_after;
     const { changeText } = await import(pathToFileURL('tools/report/src/elements.js'));
-    assert.equal(await page.$eval('.relief', (it) => it.textContent),
-      `Relief at the robot\u2019s scale: ${changeText(1000 * before, 1000 * after, 'mm')}.`);
+    assert.equal(await page.$eval('.level', (it) => it.textContent),
+      `Height about level: ${changeText(1000 * before, 1000 * after, 'mm')}.`);
     assert.equal(changeText(10.94, 4.6, 'mm'), '10.9 \u2192 4.6 mm (\u221258 %)');
     assert.equal(changeText(2, 2.5, 'mm'), '2.0 \u2192 2.5 mm (+25 %)');
     assert.equal(changeText(0, 1, 'mm'), '0.0 \u2192 1.0 mm');
     const identity = await page.$eval('#page', (it) => it.textContent);
     assert.ok(identity.includes(summary.content_hash) && identity.includes(summary.version));
     // The last point of the terrain's curve is the terrain at the end.
-    near((await block(page, 'terrain-deviation', 'double')).at(-1), 1000 * summary.terrain_after.height_deviation_m,
+    near((await block(page, 'terrain-level', 'double')).at(-1), 1000 * summary.terrain_after.level_deviation_m,
       'last of the curve');
     await page.close();
   },
@@ -171,7 +172,7 @@ const tests = {
     const end = await canvas(page);
     await moveSlider(page, 0);
     assert.notEqual(await canvas(page), end);
-    assert.equal(await page.$('.relief'), null, 'the ground is rigid');
+    assert.equal(await page.$('.level'), null, 'the ground is rigid');
     assert.deepEqual(complaints, []);
     await page.close();
   },

@@ -188,6 +188,8 @@ struct TerrainRow {
 };
 
 constexpr TerrainRow kTerrainRows[] = {
+    {"Height about level (rms)", "mm", kMmPerM,
+     [](const TerrainFigures& it) { return it.robot_scale.level_deviation_m; }},
     {"Lowest height", "mm", kMmPerM, [](const TerrainFigures& it) { return it.heights.lowest_m; }},
     {"Highest height", "mm", kMmPerM,
      [](const TerrainFigures& it) { return it.heights.highest_m; }},
@@ -230,7 +232,7 @@ class TerrainCurves {
  public:
   void add(double time_s, const TerrainFigures& figures) {
     times_s_.push_back(time_s);
-    deviation_mm_.push_back(kMmPerM * figures.heights.height_deviation_m);
+    level_mm_.push_back(kMmPerM * figures.robot_scale.level_deviation_m);
     relief_mm_.push_back(kMmPerM * figures.robot_scale.relief_m);
     roughness_mm_.push_back(kMmPerM * figures.robot_scale.roughness_m);
     flat_percent_.push_back(100.0 * figures.flatness);
@@ -248,7 +250,7 @@ class TerrainCurves {
          {"unit", "mm"},
          {"times", "terrain-times"},
          {"series",
-          Json::array({series("height deviation", "terrain-deviation", deviation_mm_),
+          Json::array({series("height about level", "terrain-level", level_mm_),
                        series("relief (robot scale)", "terrain-relief", relief_mm_),
                        series("roughness (robot scale)", "terrain-roughness", roughness_mm_)})}});
     panels.push_back({{"title", "Flat cells"},
@@ -260,7 +262,7 @@ class TerrainCurves {
 
  private:
   std::vector<double> times_s_;
-  std::vector<double> deviation_mm_;
+  std::vector<double> level_mm_;
   std::vector<double> relief_mm_;
   std::vector<double> roughness_mm_;
   std::vector<double> flat_percent_;

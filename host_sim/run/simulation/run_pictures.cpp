@@ -30,6 +30,7 @@ constexpr double kMap_px = 450.0;  // width of each map's box
 constexpr int kImageSide_px = 720;
 constexpr double kPerCent = 100.0;
 constexpr double kSecondsPerMinute = 60.0;
+constexpr Color kLevelColor{0.13, 0.47, 0.25};
 constexpr Color kReliefColor{0.84, 0.37, 0.0};
 constexpr Color kRoughnessColor{0.55, 0.58, 0.61};
 constexpr Color kTransportColor{0.10, 0.33, 0.62};
@@ -69,14 +70,21 @@ StackedChart curves(std::span<const LevelingPoint> points) {
   chart.x_label = "time [min]";
   chart.x.add(0.0);
   ChartPanel heights{"RMS of heights [mm]", {}, {}, true};
-  heights.series.push_back(series_of("relief (50 mm and longer)", points, kReliefColor,
+  heights.series.push_back(
+      series_of("about level (50 mm and longer)", points, kLevelColor,
+                [](const LevelingPoint& p) { return p.level_deviation * kMmPerM; }));
+  heights.series.push_back(series_of("relief: slant taken off", points, kReliefColor,
                                      [](const LevelingPoint& p) { return p.relief * kMmPerM; }));
   heights.series.push_back(series_of("roughness (shorter)", points, kRoughnessColor,
                                      [](const LevelingPoint& p) { return p.roughness * kMmPerM; }));
   chart.panels.push_back(std::move(heights));
   ChartPanel transport{"work remaining [%]", {}, {}, true};
-  transport.series.push_back(series_of("", points, kTransportColor, [](const LevelingPoint& p) {
+  transport.series.push_back(series_of("W1", points, kTransportColor, [](const LevelingPoint& p) {
     return (1.0 - p.progress) * kPerCent;
+  }));
+  const double squared_m5 = points.front().transport_squared;
+  transport.series.push_back(series_of("W2", points, kLevelColor, [&](const LevelingPoint& p) {
+    return std::sqrt(p.transport_squared / squared_m5) * kPerCent;
   }));
   if (!transport.series[0].points.empty()) chart.panels.push_back(std::move(transport));
   return chart;
@@ -95,8 +103,10 @@ std::string leveling_svg(const std::string& title, const HeightField& before,
   svg.text({kLeft_px, 30.0}, svg_fitted(title, 17.0, kWidth_px - 2.0 * kLeft_px),
            {.size_px = 17.0, .bold = true});
   svg.text({kLeft_px, 52.0},
-           "relief at the robot's scale " +
-               change_text(points.front().relief, points.back().relief) + ",  roughness below it " +
+           "height about level " +
+               change_text(points.front().level_deviation, points.back().level_deviation) +
+               ",  relief (the slant of the bed taken off) " +
+               change_text(points.front().relief, points.back().relief) + ",  roughness " +
                change_text(points.front().roughness, points.back().roughness),
            {.size_px = 13.0, .color = kChartFaintInk});
   const HeightRange heights = common_range(before, after);

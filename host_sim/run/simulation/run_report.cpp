@@ -2,6 +2,7 @@
 #include "host_sim/run/simulation/run_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "host_sim/core/content_hash.h"
@@ -43,6 +44,7 @@ Json json_of(const LevelingOutcome& leveling) {
   const LevelingPoint& before = leveling.before;
   const LevelingPoint& after = leveling.after;
   return {{"progress", after.progress},
+          {"progress_w2", 1.0 - std::sqrt(after.transport_squared / before.transport_squared)},
           {"transport_before_m4", before.transport},
           {"transport_after_m4", after.transport},
           {"transport_error_m4", std::max(before.transport_error, after.transport_error)},

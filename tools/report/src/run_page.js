@@ -45,11 +45,11 @@ function figuresByRobot(robots, ends) {
 }
 
 /// What the drive did to the ground, in a line; null where it moved none.
-function reliefText(terrain) {
+function levelText(terrain) {
   const of = (list, name) => list?.find((it) => it.name === name);
   if (!(of(terrain?.change, 'Ground moved')?.value > 0)) return null;
-  const { unit, before, after } = of(terrain.figures, 'Relief at robot scale (rms)');
-  return `Relief at the robot\u2019s scale: ${changeText(before, after, unit)}.`;
+  const { unit, before, after } = of(terrain.figures, 'Height about level (rms)');
+  return `Height about level: ${changeText(before, after, unit)}.`;
 }
 
 function header(page, facts) {
@@ -58,8 +58,8 @@ function header(page, facts) {
     element('p', { class: 'warning' }, facts.running ?
       'The run goes on: this is what was saved when this page was made.' :
       'The recorded run did not end: this is what was written until then.'));
-  const relief = reliefText(facts.terrain);
-  if (relief !== null) page.append(element('p', { class: 'relief' }, relief));
+  const level = levelText(facts.terrain);
+  if (level !== null) page.append(element('p', { class: 'level' }, level));
   const { robots } = facts;
   const ends = [['State at the end', 'state'], ['Faults at the end', 'faults']];
   const of = robots.length > 1 ? figuresByRobot(robots, ends)

@@ -53,10 +53,12 @@ Json json_of(const EntryScore& score) {
                {"runs", score.runs},
                {"failed", score.failed},
                {"ended_early", score.ended_early},
-               {"relief_change", json_of(score.relief_change)},
-               {"rate_per_h", json_of(score.rate_per_h)},
-               {"roughness_change", json_of(score.roughness_change)},
+               {"level_change", json_of(score.level_change)},
                {"progress", json_of(score.progress)},
+               {"progress_w2", json_of(score.progress_w2)},
+               {"relief_change", json_of(score.relief_change)},
+               {"roughness_change", json_of(score.roughness_change)},
+               {"height_change_m", json_of(score.height_change_m)},
                {"energy_j", json_of(score.energy_j)},
                {"transport_per_joule_cm3_m", json_of(score.transport_per_joule)},
                {"stuck", json_of(score.stuck)},
@@ -72,7 +74,8 @@ Json json_of(const EntryScore& score) {
   return json;
 }
 
-/// "15/30, 1.48 h": how many beds came to half of their relief, and when half of them had.
+/// "15/30, 1.48 h": how many beds came to half of their height about level, and when half of them
+/// had.
 std::string half_text(const EntryScore& score) {
   std::string text = std::to_string(score.halved) + "/" + std::to_string(score.runs + score.failed);
   if (!std::isfinite(score.half_time_s)) return text;
@@ -93,9 +96,11 @@ std::string percent(const SeedMean& mean) {
 void print_course(const CourseScore& course, const std::string& against) {
   print("{}, {:.0f} s; means over the beds and 95 % intervals; against {}: Wilcoxon, Holm\n",
         name_list(course.levels), course.duration_s, against);
-  print("  {:-16s} {:-26s} {:-26s} {:-24s} {:-14s} {:9s} {:8s} {:6s} {:5s}  {}\n", "entry",
-        "relief [%]", "progress [%]", "rate [%/h]", "half by", "cm3 m/J", "stuck %", "early",
-        "lost", "difference of relief [%], p, effect; times the rate");
+  print(
+      "  {:-16s} {:-26s} {:-26s} {:-26s} {:-26s} {:8s} {:8s} {:-14s} {:8s} {:8s} {:6s} {:5s}  {}\n",
+      "entry", "height about level [%]", "progress W1 [%]", "progress W2 [%]", "relief [%]",
+      "rough %", "mean mm", "half by", "cm3 m/J", "stuck %", "early", "lost",
+      "difference of height about level [%], p, effect; times the progress W1");
   for (const EntryScore& score : course.entries) {
     std::string difference = "-";
     if (const auto& against_it = score.against_baseline; against_it.has_value()) {
@@ -104,10 +109,14 @@ void print_course(const CourseScore& course, const std::string& against) {
       if (score.times_baseline.has_value())
         difference += "; " + with_interval(*score.times_baseline, 1, 2);
     }
-    print("  {:-16s} {:-26s} {:-26s} {:-24s} {:-14s} {:9.3f} {*100:8.1f} {:6s} {:5s}  {}\n",
-          score.entry, percent(score.relief_change), percent(score.progress),
-          percent(score.rate_per_h), half_text(score), score.transport_per_joule.mean,
-          score.stuck.mean, score.ended_early, score.failed, difference);
+    print(
+        "  {:-16s} {:-26s} {:-26s} {:-26s} {:-26s} {*100:8.1f} {*1000:8.1f} {:-14s} {:8.3f} "
+        "{*100:8.1f} "
+        "{:6s} {:5s}  {}\n",
+        score.entry, percent(score.level_change), percent(score.progress),
+        percent(score.progress_w2), percent(score.relief_change), score.roughness_change.mean,
+        score.height_change_m.mean, half_text(score), score.transport_per_joule.mean,
+        score.stuck.mean, score.ended_early, score.failed, difference);
   }
 }
 
@@ -282,15 +291,15 @@ void print_verification(const Evolution& evolution, const EvolutionFile& file) {
   print("verified on {} beds that the search never had; means and 95 % intervals\n",
         file.verification_beds.size());
   constexpr const char* kRow = "  {:-12s} {:-26s} {:-26s} {:-26s} {:-34s} {}\n";
-  print(kRow, "entry", "relief [%]", "progress [%]", "relief as in the search [%]",
-        "relief, less before [%], p", "parameters");
+  print(kRow, "entry", "height about level [%]", "progress W1 [%]", "as in the search [%]",
+        "less before [%], p", "parameters");
   for (std::size_t i = 0; i < evolution.fine.size(); ++i) {
     const Candidate& candidate = evolution.fine[i];
     std::string difference = "-";
     if (const auto& before = candidate.score.against_baseline; before.has_value())
       difference = percent(before->difference) + filled(", {:.2g}", before->p_holm);
-    print(kRow, candidate.name, percent(candidate.score.relief_change),
-          percent(candidate.score.progress), percent(evolution.coarse[i].relief_change), difference,
+    print(kRow, candidate.name, percent(candidate.score.level_change),
+          percent(candidate.score.progress), percent(evolution.coarse[i].level_change), difference,
           text_of(file, candidate));
   }
 }

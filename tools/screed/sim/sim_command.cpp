@@ -102,9 +102,13 @@ void print_terrain(const Json& run, double flatness_deg) {
   if (!std::isnan(leveling["transport_after_m4"].get<double>()))
     row("transport to level ground", "{*1000:.3f} L m", leveling["transport_before_m4"],
         leveling["transport_after_m4"]);
+  if (!std::isnan(leveling["progress"].get<double>()))
+    print_row("progress by W1, by W2", "{progress*100:.1f} %, {progress_w2*100:.1f} %", leveling);
   figure("flat at robot scale", "robot_scale_flatness", kPercent, share_change_text);
   figure("relief at robot scale", "relief_m", kMillimetres);
   figure("roughness", "roughness_m", kMillimetres);
+  figure("mean height", "mean_height_m", kMillimetres,
+         [](double from, double to) { return filled("{*1000:+.1f} mm", to - from); });
   figure(filled("flat cells, up to {:g} deg", flatness_deg), "flatness", kPercent,
          share_change_text);
   figure("mean slope of cells", "mean_slope_deg", kDegrees);

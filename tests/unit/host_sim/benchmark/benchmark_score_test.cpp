@@ -25,8 +25,8 @@ CampaignPlan plan() {
   return plan;
 }
 
-/// The walk leaves the relief as it is; the spin takes 10, 20 and 30 % of it, of twice as much on
-/// the second course.
+/// The walk leaves the ground as it is; the spin takes 10, 20 and 30 % of its height about level,
+/// of twice as much on the second course.
 ValueTable runs() {
   ValueTable table;
   for (int run = 0; run < 12; ++run) {
@@ -34,8 +34,13 @@ ValueTable runs() {
     const double share = spin ? 0.1 * (run % 3 + 1) : 0.0;
     const double before = run < 6 ? 0.01 : 0.02;
     table.add_row();
-    table.set("terrain_before.relief_m", before);
-    table.set("terrain_after.relief_m", before * (1.0 - share));
+    table.set("terrain_before.level_deviation_m", before);
+    table.set("terrain_after.level_deviation_m", before * (1.0 - share));
+    table.set("terrain_before.relief_m", 0.5 * before);
+    table.set("terrain_after.relief_m", 0.5 * before * (1.0 - share * share));
+    table.set("terrain_before.mean_height_m", 0.001);
+    table.set("terrain_after.mean_height_m", -0.002);
+    table.set("leveling.progress_w2", share);
     table.set("terrain_before.roughness_m", 0.001);
     table.set("terrain_after.roughness_m", 0.002);
     table.set("leveling.progress", 2.0 * share);
@@ -58,12 +63,14 @@ TEST(BenchmarkScore, OfEachEntryOnEachCourse) {
     ASSERT_EQ(course.entries.size(), 2U);
     const EntryScore& walk = course.entries[0];
     const EntryScore& spin = course.entries[1];
-    EXPECT_NEAR(walk.relief_change.mean, 0.0, 1e-12);
+    EXPECT_NEAR(walk.level_change.mean, 0.0, 1e-12);
     EXPECT_FALSE(walk.against_baseline.has_value());
-    EXPECT_NEAR(spin.relief_change.mean, -0.2, 1e-12);
-    EXPECT_GE(spin.relief_change.interval.low, -0.3 - 1e-9);
-    EXPECT_LE(spin.relief_change.interval.high, -0.1 + 1e-9);
-    EXPECT_NEAR(spin.rate_per_h.mean, 0.4, 1e-12);
+    EXPECT_NEAR(spin.level_change.mean, -0.2, 1e-12);
+    EXPECT_GE(spin.level_change.interval.low, -0.3 - 1e-9);
+    EXPECT_LE(spin.level_change.interval.high, -0.1 + 1e-9);
+    EXPECT_NEAR(spin.progress_w2.mean, 0.2, 1e-12);
+    EXPECT_NEAR(spin.relief_change.mean, -0.14 / 3.0, 1e-12);
+    EXPECT_NEAR(spin.height_change_m.mean, -0.003, 1e-12);
     EXPECT_NEAR(spin.progress.mean, 0.4, 1e-12);
     EXPECT_NEAR(spin.roughness_change.mean, 1.0, 1e-12);
     EXPECT_NEAR(spin.transport_per_joule.mean, 3.0, 1e-12);
@@ -87,7 +94,7 @@ ValueTable curves() {
       table.add_row();
       table.set("run", run);
       table.set("time", 60.0 * minute);
-      if (minute != 1) table.set("relief", 0.01 * (1.0 - fall * minute));
+      if (minute != 1) table.set("level_deviation", 0.01 * (1.0 - fall * minute));
     }
   }
   return table;
@@ -104,8 +111,8 @@ TEST(BenchmarkScore, HalfIsReachedWhereHalfOfTheBedsReachIt) {
   EXPECT_TRUE(std::isnan(score_benchmark(plan(), runs(), {}, "walk")[0].entries[1].half_time_s));
 }
 
-// Numbers without rounding: relief falls from 1/64 to just half of it, or to a little more.
-TEST(BenchmarkScore, JustHalfIsHalfOfTheReliefAndOfTheBeds) {
+// Numbers without rounding: the height falls from 1/64 to just half of it, or to a little more.
+TEST(BenchmarkScore, JustHalfIsHalfOfTheHeightAndOfTheBeds) {
   CampaignPlan four = plan();
   four.settings.seeds = {1, 2, 3, 4};
   // When half is reached, s, of four beds each of the walk and the spin on both courses; 0: never.
@@ -124,7 +131,7 @@ TEST(BenchmarkScore, JustHalfIsHalfOfTheReliefAndOfTheBeds) {
       table.add_row();
       table.set("run", run);
       table.set("time", time_s);
-      table.set("relief", minute == 0 ? 0x1p-6 : 0x1p-6 * share);
+      table.set("level_deviation", minute == 0 ? 0x1p-6 : 0x1p-6 * share);
     }
   }
   const std::vector<CourseScore> courses = score_benchmark(four, results, table, "walk");
@@ -142,15 +149,13 @@ TEST(BenchmarkScore, JustHalfIsHalfOfTheReliefAndOfTheBeds) {
 }
 
 TEST(BenchmarkScore, TimesTheBaselineIsOfMeansOverTheSameBeds) {
-  // The spin takes 10, 20, 30 %, the other 5, 10, nothing known; of three beds the last is left
-  // out.
+  // The spin does 10, 20, 30 % of the work, the other 5, 10, nothing known; of three beds the last
+  // is left out.
   ValueTable table;
   const double shares[2][3] = {{0.05, 0.1, 0.0}, {0.1, 0.2, 0.3}};
   for (int run = 0; run < 12; ++run) {
     table.add_row();
-    table.set("terrain_before.relief_m", 0.01);
-    if (run % 6 == 2) continue;
-    table.set("terrain_after.relief_m", 0.01 * (1.0 - shares[run / 3 % 2][run % 3]));
+    if (run % 6 != 2) table.set("leveling.progress", shares[run / 3 % 2][run % 3]);
   }
   const std::vector<CourseScore> courses = score_benchmark(plan(), table, {}, "walk");
   const std::optional<SeedMean>& times = courses[0].entries[1].times_baseline;
@@ -167,8 +172,8 @@ TEST(BenchmarkScore, ARunWithoutFiguresIsCountedAsFailed) {
   for (int run = 0; run < 12; ++run) {
     table.add_row();
     if (run == 3) continue;
-    table.set("terrain_before.relief_m", 0.01);
-    table.set("terrain_after.relief_m", 0.008);
+    table.set("terrain_before.level_deviation_m", 0.01);
+    table.set("terrain_after.level_deviation_m", 0.008);
   }
   const std::vector<CourseScore> courses = score_benchmark(plan(), table, {}, "nobody");
   EXPECT_EQ(courses[0].entries[1].runs, 2U);

@@ -82,7 +82,7 @@ class EvolutionOf : public ::testing::Test {
       EntryScore score;
       score.entry = name;
       score.runs = task.beds.size();
-      score.relief_change.mean = relief;
+      score.level_change.mean = relief;
       score.progress.mean = -relief;
       scores.push_back(score);
     }
@@ -136,7 +136,7 @@ TEST_F(EvolutionOf, FindsTheBestParametersAndVerifiesThemOnOtherBeds) {
   const std::string csv = archive_csv(file, evolution);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 151);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "candidate,walk_speed_max,walk_yaw_rate_max,runs,failed,ended_early,relief_change,"
+            "candidate,walk_speed_max,walk_yaw_rate_max,runs,failed,ended_early,level_change,"
             "progress,energy_j");
 
   tasks_.clear();
@@ -150,7 +150,7 @@ TEST_F(EvolutionOf, EasyBedsMakeNoFinalist) {
       evolve(file, benchmark_, [this](const Benchmark& benchmark, const EvolutionTask& task) {
         std::vector<EntryScore> scores = run(benchmark, task);
         if (task.name == "generation-01")
-          for (EntryScore& score : scores) score.relief_change.mean -= 5.0;
+          for (EntryScore& score : scores) score.level_change.mean -= 5.0;
         return scores;
       });
   ASSERT_EQ(evolution.fine.size(), 3U);
@@ -176,14 +176,14 @@ TEST_F(EvolutionOf, SaysSoWhereNothingFoundIsBetter) {
 
 TEST_F(EvolutionOf, AFailedRunIsWorthNothing) {
   EntryScore score;
-  score.relief_change.mean = -0.4;
+  score.level_change.mean = -0.4;
   score.progress.mean = 0.2;
-  EXPECT_EQ(value_of(score, EvolutionObjective::kRelief), -0.4);
+  EXPECT_EQ(value_of(score, EvolutionObjective::kLevel), -0.4);
   EXPECT_EQ(value_of(score, EvolutionObjective::kProgress), -0.2);
   score.failed = 1;
-  EXPECT_EQ(value_of(score, EvolutionObjective::kRelief), 1.0);
+  EXPECT_EQ(value_of(score, EvolutionObjective::kLevel), 1.0);
   score = {};
-  EXPECT_EQ(value_of(score, EvolutionObjective::kRelief), 1.0) << "no figure";
+  EXPECT_EQ(value_of(score, EvolutionObjective::kLevel), 1.0) << "no figure";
 }
 
 TEST_F(EvolutionOf, TheSearchsRunsAreShorterAndCoarser) {
@@ -214,7 +214,7 @@ TEST_F(EvolutionOf, TheShippedSearchFitsTheBenchmark) {
         std::vector<EntryScore> scores(task.entries.size());
         for (std::size_t i = 0; i < scores.size(); ++i) {
           scores[i].entry = task.entries[i];
-          scores[i].relief_change.mean = -0.1;
+          scores[i].level_change.mean = -0.1;
           scores[i].progress.mean = 0.1;
         }
         return scores;

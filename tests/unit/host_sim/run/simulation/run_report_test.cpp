@@ -49,10 +49,10 @@ SimulationSummary summary() {
   s.terrain.change = {46.5, 47.5, 48.5, 49.5};
   s.leveling.before.transport = 61.5;
   s.leveling.before.transport_error = 2.5;
-  s.leveling.before.transport_squared = 62.5;
+  s.leveling.before.transport_squared = 64.0;
   s.leveling.after.transport = 63.5;
   s.leveling.after.transport_error = 1.5;
-  s.leveling.after.transport_squared = 64.5;
+  s.leveling.after.transport_squared = 16.0;
   s.leveling.after.progress = 0.375;
   s.leveling.after.transport_per_joule = 65.5;
   s.leveling.after.slip = 0.125;
@@ -148,9 +148,9 @@ TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
                   slopes + R"("flatness": 0.75,)" + robot_scale +
                   R"(, "terrain_change": {"moved_m3": 46.5, "cut_m3": 46.5, "fill_m3": 47.5,
                   "deepest_cut_m": 48.5, "deepest_fill_m": 49.5},
-                  "leveling": {"progress": 0.375, "transport_before_m4": 61.5,
+                  "leveling": {"progress": 0.375, "progress_w2": 0.5, "transport_before_m4": 61.5,
                   "transport_after_m4": 63.5, "transport_error_m4": 2.5,
-                  "squared_transport_before_m5": 62.5, "squared_transport_after_m5": 64.5,
+                  "squared_transport_before_m5": 64.0, "squared_transport_after_m5": 16.0,
                   "transport_per_joule_m4": 65.5, "slip": 0.125, "stuck": 0.0625,
                   "tilted": 0.03125, "off_site": 0.015625,
                   "returning": 0.0078125, "visited": 0.75}})");
