@@ -91,8 +91,8 @@ struct Evolution {
   std::optional<std::size_t> best;
 };
 
-/// Of a candidate: the lower the better. One whose runs failed counts as one that raised the
-/// ground.
+/// Of a candidate: the lower the better. One whose runs failed counts as one that doubled
+/// the height about level.
 double value_of(const EntryScore& score, EvolutionObjective objective);
 
 /// `told` hears of each generation. Throws InputError when the benchmark has no such suite, entry

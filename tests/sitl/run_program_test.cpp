@@ -93,6 +93,7 @@ TEST_F(Outcome, TheLevelingCurveIsInTheSummaryTheSessionAndItsCsv) {
   const Json& leveling = summary["leveling"];
   EXPECT_EQ(leveling["transport_before_m4"], 0.0) << "the bed was level";
   EXPECT_TRUE(leveling["progress"].is_null());
+  EXPECT_TRUE(leveling["progress_w2"].is_null());
   EXPECT_GT(leveling["transport_after_m4"].get<double>(), 0.0);
   EXPECT_LT(leveling["transport_per_joule_m4"].get<double>(), 0.0) << "digging levels no bed";
 

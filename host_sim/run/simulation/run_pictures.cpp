@@ -34,6 +34,7 @@ constexpr Color kLevelColor{0.13, 0.47, 0.25};
 constexpr Color kReliefColor{0.84, 0.37, 0.0};
 constexpr Color kRoughnessColor{0.55, 0.58, 0.61};
 constexpr Color kTransportColor{0.10, 0.33, 0.62};
+constexpr Color kSquaredColor{0.55, 0.25, 0.60};
 
 /// From level ground there is no change in per cent.
 std::string change_text(double before, double after) {
@@ -83,7 +84,7 @@ StackedChart curves(std::span<const LevelingPoint> points) {
     return (1.0 - p.progress) * kPerCent;
   }));
   const double squared_m5 = points.front().transport_squared;
-  transport.series.push_back(series_of("W2", points, kLevelColor, [&](const LevelingPoint& p) {
+  transport.series.push_back(series_of("W2", points, kSquaredColor, [&](const LevelingPoint& p) {
     return std::sqrt(p.transport_squared / squared_m5) * kPerCent;
   }));
   if (!transport.series[0].points.empty()) chart.panels.push_back(std::move(transport));

@@ -107,8 +107,9 @@ void print_terrain(const Json& run, double flatness_deg) {
   figure("flat at robot scale", "robot_scale_flatness", kPercent, share_change_text);
   figure("relief at robot scale", "relief_m", kMillimetres);
   figure("roughness", "roughness_m", kMillimetres);
-  figure("mean height", "mean_height_m", kMillimetres,
-         [](double from, double to) { return filled("{*1000:+.1f} mm", to - from); });
+  print_row("mean height", "", "",
+            filled("{*1000:+.1f} mm",
+                   is["mean_height_m"].get<double>() - was["mean_height_m"].get<double>()));
   figure(filled("flat cells, up to {:g} deg", flatness_deg), "flatness", kPercent,
          share_change_text);
   figure("mean slope of cells", "mean_slope_deg", kDegrees);

@@ -15,6 +15,7 @@ namespace {
 LevelingPoint point_at(double time_s, double relief_m, double roughness_m) {
   LevelingPoint point;
   point.time = time_s;
+  point.level_deviation = 1.5 * relief_m;
   point.relief = relief_m;
   point.roughness = roughness_m;
   return point;
@@ -40,6 +41,7 @@ class LevelingPicture : public ::testing::Test {
 TEST_F(LevelingPicture, SaysByHowMuchFromTheFirstPointToTheLast) {
   const std::string text = svg();
   EXPECT_NE(text.find("bed: 60 s"), std::string::npos);
+  EXPECT_NE(text.find("height about level 18.0 \u2192 8.1 mm (\u221255 %)"), std::string::npos);
   EXPECT_NE(text.find("12.0 \u2192 5.4 mm (\u221255 %)"), std::string::npos);
   EXPECT_NE(text.find("2.0 \u2192 2.5 mm (+25 %)"), std::string::npos);
   EXPECT_EQ(count(text, "<image"), 2U) << "before and after";
