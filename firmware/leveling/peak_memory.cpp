@@ -52,12 +52,8 @@ int16_t PeakMemory::height(const int16_t (&mm)[2]) const {
 }
 
 void PeakMemory::learn(const LevelingInput& input) {
-  const int16_t c = cos_q15(input.heading);
-  const int16_t s = sin_q15(input.heading);
-  // The slope in the robot's axes, turned: uphill to the east and to the north.
-  const int16_t uphill[2] = {
-      static_cast<int16_t>(asr(mul_i16(input.pitch, c) - mul_i16(input.roll, s), 15)),
-      static_cast<int16_t>(asr(mul_i16(input.pitch, s) + mul_i16(input.roll, c), 15))};
+  int16_t uphill[2] = {input.pitch, input.roll};
+  turn_vector(uphill, input.heading);  // from the robot's axes to east and north
   const Spot here = spot(input.place.mm);
   for (uint8_t axis = kX; axis <= kY; ++axis) {
     const uint8_t ahead = axis == kX ? 1 : kSide;

@@ -41,6 +41,12 @@ struct SiteRectangle {
     mm[axis] = mm[axis] < 0 ? static_cast<int16_t>(-reach) : reach;
   }
 
+  /// A place nearer to an edge than so far, or outside.
+  bool near_edge(const int16_t (&mm)[2], int16_t from_edge_mm) const {
+    return abs_i16(mm[kX]) > static_cast<uint16_t>(half_mm[kX] - from_edge_mm) ||
+           abs_i16(mm[kY]) > static_cast<uint16_t>(half_mm[kY] - from_edge_mm);
+  }
+
   int16_t half_mm[2];  ///< of the sides, east and north
 
  private:

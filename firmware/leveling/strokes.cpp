@@ -1,4 +1,4 @@
-// Moves the ground downhill by strokes.
+// Carries ground by strokes, the way that levels the site.
 #include "firmware/leveling/strokes.h"
 
 namespace screed {
@@ -12,29 +12,36 @@ constexpr uint16_t kApartTicks = kTickRate_hz / 2;  // of travel between two pla
 constexpr uint16_t kFaceTicks = 3 * kTickRate_hz;   // longest turn
 constexpr Angle kFacing = angle_from_centidegrees(1000);
 constexpr YawRate kMaxTurnRate = yaw_rate_from_degrees(90);
-constexpr uint8_t kSlopeLag = 4;  // of the slope, 2^4 ticks
+constexpr uint16_t kAheadTicks = 60;  // from one work to the next of a row
+constexpr int16_t kAheadSpeed_mm_per_s = 200;
 
-// Slope from which on it works: at first, at least, and by how much it changes.
-constexpr Angle kFirstLimit = angle_from_centidegrees(800);
-constexpr Angle kMinLimit = angle_from_centidegrees(200);
+// Flow from which on it works, 1/16 of the map's unit: at first, at least, and by how much it
+// changes.
+constexpr uint8_t kLimitShift = 4;
+constexpr int16_t kFirstLimit = 10880;
+constexpr int16_t kMinLimit = 352;
 constexpr uint8_t kFall = 3;  // by 2^-3 after every journey
-constexpr uint8_t kRise = 4;  // by 2^-4 with every work
-
-void follow(Angle& lagging, Angle value) {
-  lagging = wrap_angle(static_cast<int32_t>(lagging) +
-                       asr_i16(angle_difference(value, lagging), kSlopeLag));
-}
+constexpr uint8_t kRise = 6;  // by 2^-6 with every work
 
 }  // namespace
 
 Strokes::Strokes(const Parameters& parameters)
     : parameters_(parameters),
       random_(static_cast<uint16_t>(parameters.random_seed())),
-      site_(parameters),
+      map_(parameters),
       limit_(kFirstLimit),
       down_ticks_(static_cast<uint8_t>(ticks_from_ms(parameters.stroke_down()))),
       up_ticks_(static_cast<uint8_t>(ticks_from_ms(parameters.stroke_up()))) {
   begin_journey();
+}
+
+void Strokes::look(const LevelingInput& input) {
+  int16_t from[2];
+  map_.source(input, from);
+  state_.from_ahead = from[0];
+  state_.direction = atan2_angle(from[1], from[0]);
+  turn_vector(from, static_cast<Angle>(-state_.direction));
+  state_.flow = from[0];
 }
 
 void Strokes::begin(Phase phase, uint16_t ticks) {
@@ -47,23 +54,22 @@ void Strokes::begin_cycle() {
 }
 
 void Strokes::begin_journey() {
-  site_.draw_place_at_edge(random_, kFromEdge_mm, state_.target_mm);
+  map_.site().draw_place_at_edge(random_, kFromEdge_mm, state_.target_mm);
   begin(Phase::kTravel, kTravelTicks);
 }
 
 MotionCommand Strokes::travel(const LevelingInput& input, Behaviour& behaviour) {
   if (state_.ticks_left < kTravelTicks - kApartTicks &&
-      mul_i16(state_.pitch, state_.pitch) + mul_i16(state_.roll, state_.roll) >
-          mul_i16(limit_, limit_)) {
-    limit_ = static_cast<Angle>(limit_ + asr_i16(limit_, kRise));
-    state_.downhill = state_.pitch < 0;  // the way that takes the shorter turn
+      state_.flow > asr_i16(limit_, kLimitShift)) {
+    limit_ = static_cast<int16_t>(limit_ + asr_i16(limit_, kRise));
+    state_.backwards = state_.from_ahead < 0;  // the way that takes the shorter turn
     begin(Phase::kFace, kFaceTicks);
     return face(behaviour);
   }
   const auto east = static_cast<int16_t>(state_.target_mm[kX] - input.place.mm[kX]);
   const auto north = static_cast<int16_t>(state_.target_mm[kY] - input.place.mm[kY]);
   if (state_.ticks_left == 0 || (abs_i16(east) < kArrived_mm && abs_i16(north) < kArrived_mm)) {
-    limit_ = static_cast<Angle>(limit_ - asr_i16(limit_, kFall));
+    limit_ = static_cast<int16_t>(limit_ - asr_i16(limit_, kFall));
     if (limit_ < kMinLimit) limit_ = kMinLimit;
     begin_journey();
   }
@@ -71,8 +77,8 @@ MotionCommand Strokes::travel(const LevelingInput& input, Behaviour& behaviour) 
 }
 
 MotionCommand Strokes::face(Behaviour& behaviour) {
-  Angle turn = atan2_angle(state_.roll, state_.pitch);
-  if (state_.downhill) turn = angle_difference(turn, INT16_MIN);
+  Angle turn = state_.direction;
+  if (state_.backwards) turn = angle_difference(turn, INT16_MIN);
   if (abs_i16(turn) < kFacing || state_.ticks_left == 0) {
     begin(Phase::kStroke, ticks_from_ms(parameters_.stroke_time()));
     begin_cycle();
@@ -85,9 +91,15 @@ MotionCommand Strokes::face(Behaviour& behaviour) {
 
 MotionCommand Strokes::stroke(Behaviour& behaviour) {
   if (state_.cycle_ticks == 0) {
-    const auto uphill = state_.downhill ? static_cast<Angle>(-state_.pitch) : state_.pitch;
-    if (state_.ticks_left == 0 || uphill < asr_i16(limit_, 1)) {
-      begin(Phase::kTravel, kTravelTicks);  // on to the same place
+    const auto flow =
+        state_.backwards ? static_cast<int16_t>(-state_.from_ahead) : state_.from_ahead;
+    const bool done = flow < asr_i16(limit_, kLimitShift + 1);
+    if (done || state_.ticks_left == 0) {
+      if (done) {
+        begin(Phase::kTravel, kTravelTicks);  // on to the same place
+      } else {
+        begin(Phase::kAhead, kAheadTicks);
+      }
       return behaviour.enter_or_stay(LevelingState::kWalk, {0, 0});
     }
     begin_cycle();
@@ -102,13 +114,24 @@ MotionCommand Strokes::stroke(Behaviour& behaviour) {
   }
   return behaviour.enter_or_stay(
       LevelingState::kStroke,
-      {state_.downhill ? static_cast<int16_t>(-state_.speed) : state_.speed, 0});
+      {state_.backwards ? static_cast<int16_t>(-state_.speed) : state_.speed, 0});
+}
+
+MotionCommand Strokes::ahead(const LevelingInput& input, Behaviour& behaviour) {
+  if (state_.ticks_left == 0) {
+    begin(Phase::kTravel, kTravelTicks - kApartTicks);  // it may work at once
+  } else if (map_.site().near_edge(input.place.mm, kFromEdge_mm)) {
+    begin(Phase::kTravel, kTravelTicks);
+  } else {
+    return behaviour.enter_or_stay(LevelingState::kWalk, {kAheadSpeed_mm_per_s, 0});
+  }
+  return travel(input, behaviour);
 }
 
 MotionCommand Strokes::tick(const LevelingInput& input, Behaviour& behaviour) {
   const LevelingState state = behaviour.state();
-  follow(state_.pitch, input.pitch);
-  follow(state_.roll, input.roll);
+  map_.tick(input, state == LevelingState::kWalk && state_.phase == Phase::kTravel);
+  look(input);
   // Something came between: the return to the site, an escape. That place may be out of reach.
   if (state != LevelingState::kWalk && state != LevelingState::kStroke) {
     begin_journey();
@@ -116,6 +139,7 @@ MotionCommand Strokes::tick(const LevelingInput& input, Behaviour& behaviour) {
   if (state_.ticks_left != 0) --state_.ticks_left;
   if (state_.phase == Phase::kFace) return face(behaviour);
   if (state_.phase == Phase::kStroke) return stroke(behaviour);
+  if (state_.phase == Phase::kAhead) return ahead(input, behaviour);
   return travel(input, behaviour);
 }
 

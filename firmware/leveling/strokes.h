@@ -1,21 +1,23 @@
-// Strokes: on a slope the robot faces straight up or down it and drives to and fro so fast that its
-// tracks slip; the ground goes downhill.
+// Strokes: the robot drives to and fro so fast that its tracks slip, and carries ground the way
+// that levels its site.
 //
 // Tracks that slip carry the layer below them along. Where a robot turns round faster than friction
-// can turn it, it slips for a tenth of a second, until its body has followed. On a slope it does so
-// at the lower end of a stroke, where gravity works against it, and hardly at the upper one, where
-// gravity helps: so most of the slip is downhill, the more since the way down begins gently. The
-// way up takes longer, by what the robot slides down on 10 degrees; gentler slopes it works its way
-// up. A spin slips as much to all sides and carries a fifth of that (docs/studies/soil.md,
-// Strokes).
+// can turn it, it slips for a tenth of a second, until its body has followed. A stroke that begins
+// gently one way and hard the other slips at one of its ends only, and carries ground against the
+// hard way; uphill that is, so that gravity helps. A spin slips as much to all sides and carries a
+// fifth of that (docs/studies/soil.md, Strokes).
 //
-// Where: it drives from one random place at the edge of its site to the next and works on every
-// slope on its way that is worth it. What is worth it follows from what there is: the limit falls
-// with every journey and rises with every work, so the steepest goes first.
+// Which way: where the map of flows (flow_map.h) wants ground to come from is the hard way. The
+// robot faces it or turns its back on it, whichever is the shorter turn.
+//
+// Where: it drives from one random place at the edge of its site to the next and works wherever the
+// flow is worth it. What is worth it follows from what there is: the limit falls with every journey
+// and rises with every work, so the largest flow goes first. After a work it goes on ahead, so that
+// works lie in a row and one hands on what the other brought.
 #pragma once
 
 #include "firmware/leveling/behaviour.h"
-#include "firmware/leveling/site.h"
+#include "firmware/leveling/flow_map.h"
 #include "firmware/math/random.h"
 
 namespace screed {
@@ -27,34 +29,38 @@ class Strokes : public AlgorithmDefaults {
 
   MotionCommand tick(const LevelingInput& input, Behaviour& behaviour);
 
-  /// Slope from which on it works.
-  Angle limit() const { return limit_; }
+  /// Flow from which on it works, 1/16 of the map's unit.
+  int16_t limit() const { return limit_; }
+  const FlowMap& map() const { return map_; }
 
  private:
-  enum class Phase : uint8_t { kTravel, kFace, kStroke };
+  enum class Phase : uint8_t { kTravel, kFace, kStroke, kAhead };
   struct State {
-    Angle pitch;  ///< with a lag
-    Angle roll;
+    int16_t flow;         ///< below the robot, as the map gives it
+    int16_t from_ahead;   ///< of it, what has to come from ahead
+    Angle direction;      ///< from where it has to come, left of ahead
     uint16_t ticks_left;  ///< of the phase, at most
     int16_t target_mm[2];
-    int16_t speed;  ///< uphill
+    int16_t speed;  ///< the hard way
     Phase phase;
-    bool downhill;        ///< it faces downhill, else uphill
-    uint8_t cycle_ticks;  ///< left of one way down and up
+    bool backwards;       ///< its back faces where ground comes from
+    uint8_t cycle_ticks;  ///< left of one way to and fro
   };
 
+  void look(const LevelingInput& input);
   void begin(Phase phase, uint16_t ticks);
   void begin_cycle();
   void begin_journey();
   MotionCommand travel(const LevelingInput& input, Behaviour& behaviour);
   MotionCommand face(Behaviour& behaviour);
   MotionCommand stroke(Behaviour& behaviour);
+  MotionCommand ahead(const LevelingInput& input, Behaviour& behaviour);
 
   State state_{};
   Kept<Parameters> parameters_;
   Random random_;
-  SiteRectangle site_;
-  Angle limit_;
+  FlowMap map_;
+  int16_t limit_;
   uint8_t down_ticks_;
   uint8_t up_ticks_;
 };

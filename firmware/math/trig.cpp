@@ -93,4 +93,13 @@ Angle atan2_angle(int32_t y, int32_t x) {
   return wrap_angle(y < 0 ? -angle : angle);
 }
 
+SCREED_OUT_OF_LINE void turn_vector(int16_t (&vector)[2], Angle by) {
+  const int16_t c = cos_q15(by);
+  const int16_t s = sin_q15(by);
+  const int16_t x = vector[0];
+  const int16_t y = vector[1];
+  vector[0] = static_cast<int16_t>(asr(mul_i16(x, c) - mul_i16(y, s), 15));
+  vector[1] = static_cast<int16_t>(asr(mul_i16(x, s) + mul_i16(y, c), 15));
+}
+
 }  // namespace screed

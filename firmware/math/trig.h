@@ -35,4 +35,7 @@ int16_t cos_q15(Angle angle);
 /// true value. Any pair is allowed; (0, 0) gives 0; y = 0 and x < 0 gives -32768.
 Angle atan2_angle(int32_t y, int32_t x);
 
+/// Turns a vector counter-clockwise by an angle. Its length must be less than 2^15.
+void turn_vector(int16_t (&vector)[2], Angle by);
+
 }  // namespace screed

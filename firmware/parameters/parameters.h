@@ -82,11 +82,11 @@
   X(coverage_spacing,       "mm",         50,  2000,    200, "coverage: distance between two lines") \
   X(escape_attempts,        "",            0,    20,      6, \
     "a robot that is stuck tries this often to get out, then stops with the fault stuck; 0: no escape") \
-  X(stroke_down,            "ms",         20,  1000,    180, "strokes: time downhill") \
-  X(stroke_up,              "ms",         20,  1000,    240, \
-    "strokes: time uphill; longer, by what the robot slides down") \
+  X(stroke_down,            "ms",         20,  1000,    180, "strokes: time of the easy way") \
+  X(stroke_up,              "ms",         20,  1000,    200, \
+    "strokes: time of the hard way, on which the tracks slip and carry ground back") \
   X(stroke_ease,            "0.1 m/s^2",   1,   500,     30, \
-    "strokes: change of the commanded speed into the downhill way; uphill it is at once, as 500 is") \
+    "strokes: change of the commanded speed into the easy way; into the hard way it is at once, as 500 is") \
   X(stroke_time,            "ms",        100, 30000,  16000, "strokes: longest work at one place")
 
 /// Those that a robot also takes while it is armed or runs: gains and thresholds that count from the

@@ -1,10 +1,12 @@
-// Strokes: on a slope the robot faces straight up or down it and rocks, gently into the way down
-// and at once into the way up; the limit of what is worth it follows from what there is.
+// Strokes: the robot faces where ground has to come from, or turns its back on it, and rocks,
+// gently away from there and at once towards it; the limit of what is worth it follows from what
+// there is.
 #include "firmware/leveling/strokes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -66,8 +68,6 @@ class StrokesOnAPlane : public ::testing::Test {
     ASSERT_TRUE(strokes_now());
   }
   bool strokes_now() const { return behaviour_.state() == LevelingState::kStroke; }
-  double limit_deg() const { return strokes_.limit() / kAngleUnits / kDegree; }
-
   double slope_deg_ = 0.0;
   double uphill_deg_ = 0.0;
   double x_ = 0.0;
@@ -91,60 +91,45 @@ class StrokesOnAPlane : public ::testing::Test {
   }
 };
 
-TEST_F(StrokesOnAPlane, WorksStraightUpOrDownTheSlopeAndBeginsDownhill) {
-  slope_deg_ = 12.0;
-  for (const double uphill_deg : {0.0, 70.0, 180.0, -120.0}) {
-    uphill_deg_ = uphill_deg;
-    drive(90);
-  }
+class StrokesOnASlant : public StrokesOnAPlane, public ::testing::WithParamInterface<double> {};
+
+// A plane that rises along an axis asks for a flow straight down it.
+TEST_P(StrokesOnASlant, WorksStraightUpOrDownAndBeginsDownhill) {
+  slope_deg_ = 3.0;
+  uphill_deg_ = GetParam();
+  drive(900);
   ASSERT_GE(works_, 8);
+  int straight = 0;
   for (size_t i = 0; i < facing_.size(); ++i) {
-    EXPECT_GT(std::abs(std::cos(facing_[i])), std::cos(14.0 * kDegree)) << i;
+    straight += std::abs(std::cos(facing_[i])) > std::cos(20.0 * kDegree) ? 1 : 0;
     // Downhill is against the way uphill.
-    EXPECT_LT(first_speed_[i] * std::cos(facing_[i]), -29.0) << i;
+    EXPECT_LT(first_speed_[i] * std::cos(facing_[i]), 0.0) << i;
   }
-  // The tracks go further uphill than down: that makes up for the slip.
-  EXPECT_GT(uphill_mm_, 0.2 * 250.0 * stroke_ticks_ / kTickRate_hz);
+  EXPECT_GE(straight, works_ - 2) << "while it learns the slant";
 }
+
+INSTANTIATE_TEST_SUITE_P(, StrokesOnASlant, ::testing::Values(0.0, 90.0, 180.0, -90.0));
 
 TEST_F(StrokesOnAPlane, EasesIntoTheWayDownAndTurnsUphillAtOnce) {
   slope_deg_ = 12.0;
   drive_until_it_strokes();
-  while (uphill_speed_.size() < 84) tick();
-  for (int i = 0; i < 84; ++i) {
-    const int of_cycle = i % 42;  // 0.18 s down, 0.24 s up
-    const int from = i < 42 ? 0 : 250;
+  while (uphill_speed_.size() < 76) tick();
+  for (int i = 0; i < 76; ++i) {
+    const int of_cycle = i % 38;  // 0.18 s down, 0.2 s up
+    const int from = i < 38 ? 0 : 250;
     const int expected = of_cycle >= 18 ? 250 : std::max(-250, from - 30 * (of_cycle + 1));
     EXPECT_EQ(uphill_speed_[static_cast<size_t>(i)], expected) << i;
   }
 }
 
 TEST_F(StrokesOnAPlane, OnLevelGroundItOnlyDrivesAndItsLimitFalls) {
-  const double first = limit_deg();
   drive(600);
   EXPECT_EQ(works_, 0);
-  EXPECT_NEAR(limit_deg(), 2.0, 0.05);
-  EXPECT_GT(first, 7.0);
+  EXPECT_EQ(strokes_.limit(), 352);
   // It comes near all walls.
   EXPECT_GT(farthest_mm_, kHalf_mm - 220);
   // Its places are 115 mm from them; past one it turns in an arc, which only a wall would hold up.
   EXPECT_LE(farthest_mm_, kHalf_mm - 80);
-}
-
-TEST_F(StrokesOnAPlane, TheLimitRisesWithWorkSoThatTheSteepestGoesFirst) {
-  slope_deg_ = 15.0;
-  const double before = limit_deg();
-  drive(120);
-  EXPECT_GT(limit_deg(), before);
-  EXPECT_LT(limit_deg(), 15.0);
-  // What was worth it then is so no more.
-  slope_deg_ = 0.3 * limit_deg();  // what it is at ends
-  drive(1);
-  ASSERT_FALSE(strokes_now());
-  slope_deg_ = 0.8 * limit_deg();
-  works_ = 0;
-  for (int i = 0; i < 4 * kTickRate_hz && works_ == 0; ++i) tick();
-  EXPECT_EQ(works_, 0);
 }
 
 // A place that the fence, a wall or another robot keeps it from is given up.
@@ -160,18 +145,21 @@ TEST_F(StrokesOnAPlane, WhatCameBetweenEndsTheJourney) {
   EXPECT_GE(others, 5);
 }
 
-TEST_F(StrokesOnAPlane, StopsWhereTheSlopeIsGone) {
+TEST_F(StrokesOnAPlane, GoesOnAheadAfterAWorkAndWorksThere) {
   slope_deg_ = 12.0;
-  drive_until_it_strokes();
-  slope_deg_ = 1.0;
-  drive(1);
-  EXPECT_FALSE(strokes_now());
-  // And on a slope that stays, in the end.
-  slope_deg_ = 12.0;
-  drive_until_it_strokes();
+  do {  // until one ends with room ahead
+    drive_until_it_strokes();
+    while (strokes_now()) tick();
+  } while (std::max(std::abs(x_), std::abs(y_)) > kHalf_mm - 260);
+  const double x = x_;
+  const double y = y_;
+  const double angle = angle_;
   int ticks = 0;
-  for (; strokes_now() && ticks < 3000; ++ticks) tick();
-  EXPECT_NEAR(ticks, 1600, 40);
+  for (; !strokes_now() && ticks < 300; ++ticks) tick();
+  EXPECT_LE(ticks, 100);
+  const double ahead = (x_ - x) * std::cos(angle) + (y_ - y) * std::sin(angle);
+  EXPECT_NEAR(ahead, 118, 10) << "0.6 s at 0.2 m/s";
+  EXPECT_NEAR(std::hypot(x_ - x, y_ - y), ahead, 5);
 }
 
 /// A robot that is held at a place, on a slope as told; it does not turn either.
@@ -240,7 +228,24 @@ class StrokesHeld : public ::testing::Test {
     return strokes.limit() < strokes_.limit();
   }
   bool strokes_now() const { return behaviour_.state() == LevelingState::kStroke; }
-  double limit_deg() const { return strokes_.limit() / kAngleUnits / kDegree; }
+  /// Where ground has to come from, ahead and left, as the last tick saw it.
+  std::array<int16_t, 2> source() const {
+    int16_t from[2];
+    strokes_.map().source(input_, from);
+    return {from[0], from[1]};
+  }
+  double flow() const { return std::hypot(source()[0], source()[1]); }
+  double least_flow() const { return strokes_.limit() / 16.0; }
+  /// So that this share of the least flow comes from ahead, or from behind where it is negative.
+  void lean_for(double share) {
+    input_.roll = 0;
+    for (int i = 0; i < 400; ++i) {
+      input_.pitch =
+          static_cast<Angle>(std::lround(input_.pitch + (share * least_flow() - source()[0]) / 8));
+      tick();
+      if (!strokes_now()) return;
+    }
+  }
   double turn_deg_per_s() const { return motion_.yaw_rate / kAngleUnits / kDegree; }
 
   Strokes strokes_{parameters()};
@@ -250,10 +255,10 @@ class StrokesHeld : public ::testing::Test {
 };
 
 TEST_F(StrokesHeld, AJourneyEndsAfterTwelveSecondsAndTheLimitFallsByAnEighth) {
-  EXPECT_NEAR(limit_deg(), 8.0, 0.01);
-  for (const double expected : {7.0, 6.125, 5.359}) {
+  EXPECT_EQ(strokes_.limit(), 10880);
+  for (const int expected : {9520, 8330, 7289}) {
     EXPECT_EQ(ticks_until_the_limit_changes(), 12 * kTickRate_hz);
-    EXPECT_NEAR(limit_deg(), expected, 0.02);
+    EXPECT_EQ(strokes_.limit(), expected);
   }
 }
 
@@ -296,34 +301,22 @@ TEST_F(StrokesHeld, TravelsForHalfASecondBeforeItWorks) {
   EXPECT_EQ(ticks_until_it_strokes(), kTickRate_hz / 2 + 1);
 }
 
-TEST_F(StrokesHeld, TheSlopeIsThatOfTheLast16Ticks) {
-  for (const double uphill_deg : {0.0, 90.0, 180.0}) {
-    begin_anew();
-    ticks(100);
-    lean(16.0, uphill_deg);
-    EXPECT_NEAR(ticks_until_the_limit_changes(), 11, 1) << uphill_deg;  // 16 ln(16 / (16 - 8))
-  }
-}
-
-TEST_F(StrokesHeld, ASlopeCountsWhicheverWayItLies) {
+TEST_F(StrokesHeld, AFlowCountsWhicheverWayItLiesAndTheLimitRisesBySixtyFourth) {
   for (const double uphill_deg : {0.0, 45.0, 90.0, 120.0, 180.0, -150.0, -90.0, -30.0}) {
     begin_anew();
-    lean(7.8, uphill_deg);
-    ticks(400);
-    EXPECT_NEAR(limit_deg(), 8.0, 0.01) << uphill_deg;
-    lean(8.3, uphill_deg);
-    ticks(400);
-    EXPECT_NEAR(limit_deg(), 8.5, 0.01) << "a sixteenth more: " << uphill_deg;
+    ticks(60);
+    double slope_deg = 0.0;
+    double before = flow();
+    while (strokes_.limit() == 10880 && slope_deg < 20.0) {
+      before = flow();
+      slope_deg += 0.02;
+      lean(slope_deg, uphill_deg);
+      tick();
+    }
+    EXPECT_LE(before, 681.01) << uphill_deg;
+    EXPECT_GT(flow(), 679.0) << uphill_deg;
+    EXPECT_EQ(strokes_.limit(), 10880 + 170) << uphill_deg;
   }
-}
-
-TEST_F(StrokesHeld, TheLimitItselfIsNotWorthIt) {
-  input_.pitch = static_cast<Angle>(-strokes_.limit());
-  ticks(400);
-  EXPECT_NEAR(limit_deg(), 8.0, 0.01);
-  --input_.pitch;
-  tick();
-  EXPECT_NEAR(limit_deg(), 8.5, 0.01);
 }
 
 TEST_F(StrokesHeld, TurnsTheShorterWayByTwiceTheAngleASecond) {
@@ -332,12 +325,11 @@ TEST_F(StrokesHeld, TurnsTheShorterWayByTwiceTheAngleASecond) {
     double turn_deg_per_s;
   };
   for (const Case& one :
-       {Case{20, 40}, Case{-30, -60}, Case{60, 90}, Case{-80, -90},      // to face uphill
-        Case{160, -40}, Case{-150, 60}, Case{110, -90}, Case{-130, 90},  // to face downhill
-        Case{90, 90}, Case{-90, -90}}) {                                 // as short: uphill
+       {Case{20, 40}, Case{-30, -60}, Case{60, 90}, Case{-80, -90},  // to face uphill
+        Case{160, -40}, Case{-150, 60}, Case{110, -90}, Case{-130, 90}}) {
     begin_anew();
     lean(20.0, one.uphill_deg);
-    EXPECT_EQ(ticks_until_the_limit_changes(), 51);
+    EXPECT_EQ(ticks_until_the_limit_changes(), 51) << one.uphill_deg;
     EXPECT_EQ(behaviour_.state(), LevelingState::kWalk) << one.uphill_deg;
     EXPECT_EQ(motion_.speed_mm_per_s, 0) << one.uphill_deg;
     EXPECT_NEAR(turn_deg_per_s(), one.turn_deg_per_s, 0.5) << one.uphill_deg;
@@ -355,92 +347,81 @@ TEST_F(StrokesHeld, FacesTheSlopeWithinTenDegrees) {
       lean(20.0, straight + 10.5 * side);
       ticks(100);
       EXPECT_FALSE(strokes_now()) << straight << " " << side;
-      EXPECT_NEAR(limit_deg(), 8.5, 0.01) << "it turns";
+      EXPECT_EQ(strokes_.limit(), 10880 + 170) << "it turns";
     }
   }
 }
 
-TEST_F(StrokesHeld, JustTenDegreesAsideItTurnsOn) {
-  Angle roll = 0;
-  while (angle_difference(atan2_angle(roll, -12000), INT16_MIN) < angle_from_centidegrees(1000))
-    --roll;
-  ASSERT_EQ(angle_difference(atan2_angle(roll, -12000), INT16_MIN), angle_from_centidegrees(1000));
-  input_.roll = roll;
-  input_.pitch = -8000;  // 15 degrees aside
-  ticks(60);
-  input_.pitch = -12000;
-  ticks(200);
-  EXPECT_FALSE(strokes_now());
-  EXPECT_NEAR(turn_deg_per_s(), 20.0, 0.05);
-  input_.roll = static_cast<Angle>(roll + 20);
-  ticks(20);
-  EXPECT_TRUE(strokes_now());
-}
-
-// What it does not come to face is worked on all the same: one time to and fro, if there is no
-// slope along it.
+// What it does not come to face is worked on all the same: one time to and fro, if nothing comes
+// from ahead.
 TEST_F(StrokesHeld, TurnsForThreeSecondsAtMost) {
   lean(20.0, 90.0);
   ASSERT_EQ(ticks_until_the_limit_changes(), 51);
   EXPECT_EQ(ticks_until_it_strokes(), 3 * kTickRate_hz);
   EXPECT_EQ(motion_.speed_mm_per_s, -30);
-  EXPECT_EQ(ticks_of_the_work(), 42);
+  EXPECT_EQ(ticks_of_the_work(), 38);
 }
 
 TEST_F(StrokesHeld, WorksFor16SecondsAndToTheEndOfACycleForwardsAsBackwards) {
   for (const int uphill : {1, -1}) {
     begin_anew();
     lean(20.0, uphill > 0 ? 0.0 : 180.0);
-    for (int work = 0; work < 2; ++work) {
-      EXPECT_EQ(ticks_until_it_strokes(), work == 0 ? 51 : 50) << "from its last motion on";
-      EXPECT_EQ(motion_.speed_mm_per_s, -30 * uphill);
-      int forwards = 0;
-      int count = 0;
-      while (strokes_now() && count < 3000) {
-        EXPECT_EQ(motion_.yaw_rate, 0);
-        forwards += motion_.speed_mm_per_s == 250 * uphill ? 1 : 0;
-        ++count;
-        tick();
-      }
-      EXPECT_EQ(count, 39 * 42);
-      EXPECT_EQ(forwards, 39 * 24);
-      EXPECT_EQ(behaviour_.state(), LevelingState::kWalk);
-      EXPECT_EQ(motion_.speed_mm_per_s, 0);
+    EXPECT_EQ(ticks_until_it_strokes(), 51) << uphill;
+    EXPECT_EQ(motion_.speed_mm_per_s, -30 * uphill);
+    int forwards = 0;
+    int count = 0;
+    while (strokes_now() && count < 3000) {
       EXPECT_EQ(motion_.yaw_rate, 0);
+      forwards += motion_.speed_mm_per_s == 250 * uphill ? 1 : 0;
+      ++count;
       tick();
     }
+    EXPECT_EQ(count, 43 * 38);
+    EXPECT_EQ(forwards, 43 * 20);
+    EXPECT_EQ(behaviour_.state(), LevelingState::kWalk);
+    EXPECT_EQ(motion_.speed_mm_per_s, 0);
+    EXPECT_EQ(motion_.yaw_rate, 0);
+    tick();
+    EXPECT_EQ(motion_.speed_mm_per_s, 200) << "on to the next of the row, whichever way it faces";
+    EXPECT_EQ(motion_.yaw_rate, 0);
   }
 }
 
 TEST_F(StrokesHeld, AWorkEndsBelowHalfOfTheLimit) {
-  for (const double straight : {0.0, 180.0}) {
+  for (const double way : {1.0, -1.0}) {
     for (const double share : {0.45, 0.55, 0.9}) {
       begin_anew();
-      lean(20.0, straight);
-      ticks_until_it_strokes();
-      lean(share * limit_deg(), straight);
-      const int work = ticks_of_the_work();
+      lean(20.0, way > 0 ? 0.0 : 180.0);
+      ASSERT_LT(ticks_until_it_strokes(), 100);
+      lean_for(way * share);
       if (share < 0.5) {
-        EXPECT_LT(work, 3 * 42) << straight;
-        EXPECT_EQ(work % 42, 0) << straight;
+        EXPECT_FALSE(strokes_now()) << way;
       } else {
-        EXPECT_EQ(work, 39 * 42) << straight << " " << share;
+        EXPECT_TRUE(strokes_now()) << way << " " << share;
+        EXPECT_NEAR(source()[0], way * share * least_flow(), 8.0) << "the test's own";
       }
     }
   }
 }
 
-TEST_F(StrokesHeld, HalfOfTheLimitIsWorthGoingOn) {
-  for (const int below : {0, 1}) {
+TEST_F(StrokesHeld, AFlowThatHasTurnedRoundEndsTheWork) {
+  lean(20.0, 0.0);
+  ASSERT_LT(ticks_until_it_strokes(), 100);
+  lean_for(-2.0);
+  EXPECT_FALSE(strokes_now());
+}
+
+TEST_F(StrokesHeld, ARowEndsNearTheEdge) {
+  input_.place.mm[kX] = kHalf_mm - 115;
+  for (const int beyond : {0, 1}) {
     begin_anew();
+    input_.place.mm[kX] = static_cast<int16_t>(kHalf_mm - 115 + beyond);
+    input_.place.mm[kY] = -200;
     lean(20.0, 0.0);
-    ticks_until_it_strokes();
-    input_.pitch = static_cast<Angle>(strokes_.limit() / 2 - below);
-    if (below == 0) {
-      EXPECT_EQ(ticks_of_the_work(), 39 * 42);
-    } else {
-      EXPECT_LT(ticks_of_the_work(), 8 * 42);
-    }
+    ASSERT_LT(ticks_until_it_strokes(), 100);
+    EXPECT_EQ(ticks_of_the_work(), 43 * 38);
+    tick();
+    EXPECT_EQ(motion_.speed_mm_per_s == 200 && motion_.yaw_rate == 0, beyond == 0);
   }
 }
 
