@@ -92,7 +92,7 @@ SCREED_OUT_OF_LINE constexpr int32_t limit_i32(int32_t value, int32_t limit) {
 
 /// value limited to [-limit, limit]; limit >= 0. A call of it is shorter than one of limit_i32().
 SCREED_OUT_OF_LINE constexpr int16_t limit_i16(int32_t value, int16_t limit) {
-  return static_cast<int16_t>(value > limit ? limit : value < -limit ? -limit : value);
+  return static_cast<int16_t>(limit_i32(value, limit));
 }
 
 /// value limited to [low, high]; low <= high.
