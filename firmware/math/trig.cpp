@@ -9,28 +9,13 @@ namespace screed {
 namespace {
 
 /// a * b / 2^16 rounded to nearest: one factor is a fraction of 65536.
-uint16_t fraction_of(uint16_t a, uint16_t b) {
+SCREED_OUT_OF_LINE uint16_t fraction_of(uint16_t a, uint16_t b) {
   return static_cast<uint16_t>((mul_u16(a, b) + 0x8000U) >> 16);
 }
 
-/// sin of x quarter turns / 16384, x in 0..16384, as 0..32767.
-int16_t sin_first_quadrant(uint16_t x) {
-  // z = x / 16384 in (0, 1): sin(pi/2 z) = z (1 + 0.570791 - z^2 (0.645813 - z^2 (0.079300 -
-  // 0.004272 z^2))): the best of the Q16 coefficients near the real fit (0.570791, 0.645893,
-  // 0.0794343, 0.0043331), found by trial.
-  constexpr uint16_t kC1MinusOne = 37407;  // coefficients in Q16
-  constexpr uint16_t kC3 = 42324;
-  constexpr uint16_t kC5 = 5197;
-  constexpr uint16_t kC7 = 280;
-  const uint32_t square = (mul_u16(x, x) + 0x800U) >> 12;
-  const uint16_t z2 =
-      square > 0xFFFFU ? static_cast<uint16_t>(0xFFFFU) : static_cast<uint16_t>(square);
-  const uint16_t p5 = static_cast<uint16_t>(kC5 - fraction_of(z2, kC7));
-  const uint16_t p3 = static_cast<uint16_t>(kC3 - fraction_of(z2, p5));
-  const uint16_t p1 = static_cast<uint16_t>(kC1MinusOne - fraction_of(z2, p3));
-  const uint32_t sine =
-      (static_cast<uint32_t>(x) * (static_cast<uint32_t>(p1) + 0x10000U) + 0x4000U) >> 15;
-  return sine > 32767U ? kQ15One : static_cast<int16_t>(sine);
+/// A step of Horner's scheme: coefficient - square * sum, all of them fractions of 65536.
+SCREED_OUT_OF_LINE uint16_t horner(uint16_t sum, uint16_t square, uint16_t coefficient) {
+  return static_cast<uint16_t>(coefficient - fraction_of(sum, square));
 }
 
 /// atan(ratio / 65536) in angle units, 0..8192.
@@ -43,11 +28,9 @@ uint16_t atan_first_octant(uint16_t ratio) {
   constexpr uint16_t kC7 = 3553;
   constexpr uint16_t kC9 = 870;
   const uint16_t q2 = fraction_of(ratio, ratio);
-  const uint16_t p7 = static_cast<uint16_t>(kC7 - fraction_of(q2, kC9));
-  const uint16_t p5 = static_cast<uint16_t>(kC5 - fraction_of(q2, p7));
-  const uint16_t p3 = static_cast<uint16_t>(kC3 - fraction_of(q2, p5));
-  const uint16_t p1 = static_cast<uint16_t>(kC1 - fraction_of(q2, p3));
-  return static_cast<uint16_t>((mul_u16(ratio, p1) + 0x20000U) >> 18);
+  const uint16_t p1 = horner(horner(horner(horner(kC9, q2, kC7), q2, kC5), q2, kC3), q2, kC1);
+  const auto product = static_cast<uint16_t>(mul_u16(ratio, p1) >> 16);
+  return static_cast<uint16_t>((product + 2U) >> 2);
 }
 
 /// smaller / larger as a fraction of 65536, at most 65535. larger > 0, smaller <= larger.
@@ -71,11 +54,22 @@ uint16_t ratio_q16(uint32_t smaller, uint32_t larger) {
 }  // namespace
 
 int16_t sin_q15(Angle angle) {
-  const uint16_t turn = static_cast<uint16_t>(angle);
-  const uint16_t half = static_cast<uint16_t>(turn & 0x7FFFU);
-  const uint16_t x = half <= 0x4000U ? half : static_cast<uint16_t>(0x8000U - half);
-  const int16_t magnitude = sin_first_quadrant(x);
-  return (turn & 0x8000U) != 0 ? static_cast<int16_t>(-magnitude) : magnitude;
+  // z = 0..1 for 0..90 degrees: sin(pi/2 z) = z (1 + 0.570791 - z^2 (0.645813 - z^2 (0.079300 -
+  // 0.004272 z^2))): the best of the Q16 coefficients near the real fit (0.570791, 0.645893,
+  // 0.0794343, 0.0043331), found by trial.
+  constexpr uint16_t kC1MinusOne = 37407;  // coefficients in Q16
+  constexpr uint16_t kC3 = 42324;
+  constexpr uint16_t kC5 = 5197;
+  constexpr uint16_t kC7 = 280;
+  // z in Q15: twice the angle wraps at half a turn. At 90 degrees the square is 0 in place of 1,
+  // which makes the sine too large, and it stops at 32767 as it should.
+  const uint16_t z = abs_i16(static_cast<int16_t>(static_cast<uint16_t>(angle) << 1));
+  const auto z_q16 = static_cast<uint16_t>(z << 1);
+  const uint16_t square = fraction_of(z_q16, z_q16);
+  const uint16_t p1 = horner(horner(horner(kC7, square, kC5), square, kC3), square, kC1MinusOne);
+  const auto sine = static_cast<uint16_t>(z + fraction_of(z, p1));
+  const int16_t magnitude = sine > 32767U ? kQ15One : static_cast<int16_t>(sine);
+  return angle < 0 ? static_cast<int16_t>(-magnitude) : magnitude;
 }
 
 SCREED_OUT_OF_LINE int16_t cos_q15(Angle angle) {
