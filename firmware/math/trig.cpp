@@ -37,7 +37,7 @@ uint16_t atan_first_octant(uint16_t ratio) {
 uint16_t ratio_q16(uint32_t smaller, uint32_t larger) {
   // Keep 16 significant bits of the divisor whatever the length is: whole bytes first, they are
   // moves on the AVR.
-  while ((larger & 0xFF000000U) == 0) {
+  while (static_cast<uint8_t>(larger >> 24) == 0) {
     larger <<= 8;
     smaller <<= 8;
   }
@@ -47,7 +47,7 @@ uint16_t ratio_q16(uint32_t smaller, uint32_t larger) {
   }
   const auto high = static_cast<uint16_t>(smaller >> 16);
   const auto divisor = static_cast<uint16_t>((larger + 0x8000U) >> 16);
-  if (larger >= 0xFFFF8000U) return high;  // the divisor is 2^16
+  if (divisor == 0) return high;  // it is 2^16
   return high >= divisor ? static_cast<uint16_t>(0xFFFFU) : quotient_u16(smaller, divisor);
 }
 
@@ -77,14 +77,20 @@ SCREED_OUT_OF_LINE int16_t cos_q15(Angle angle) {
 }
 
 Angle atan2_angle(int32_t y, int32_t x) {
-  const uint32_t ax = abs_u32(x);
-  const uint32_t ay = abs_u32(y);
-  if (ax == 0 && ay == 0) return 0;
-  int32_t angle = ay <= ax
-                      ? static_cast<int32_t>(atan_first_octant(ratio_q16(ay, ax)))
-                      : kQuarterTurn - static_cast<int32_t>(atan_first_octant(ratio_q16(ax, ay)));
-  if (x < 0) angle = 32768 - angle;
-  return wrap_angle(y < 0 ? -angle : angle);
+  uint32_t smaller = abs_u32(y);
+  uint32_t larger = abs_u32(x);
+  const bool steep = smaller > larger;
+  if (steep) {
+    const uint32_t of_x = larger;
+    larger = smaller;
+    smaller = of_x;
+  }
+  if (larger == 0) return 0;
+  uint16_t angle = atan_first_octant(ratio_q16(smaller, larger));
+  if (steep) angle = static_cast<uint16_t>(kQuarterTurn - angle);
+  if (x < 0) angle = static_cast<uint16_t>(0x8000U - angle);
+  if (y < 0) angle = static_cast<uint16_t>(0U - angle);
+  return static_cast<Angle>(angle);
 }
 
 SCREED_OUT_OF_LINE void turn_vector(int16_t (&vector)[2], Angle by) {
