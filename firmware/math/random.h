@@ -21,9 +21,12 @@ class Random {
 
   /// Uniform in [low, high], both included; low <= high.
   int16_t uniform(int16_t low, int16_t high) {
-    const uint32_t span = static_cast<uint32_t>(static_cast<int32_t>(high) - low) + 1U;
-    const uint32_t pick = ((next() >> 16) * span) >> 16;  // 16 random bits times up to 2^16
-    return static_cast<int16_t>(static_cast<int32_t>(low) + static_cast<int32_t>(pick));
+    const auto span =
+        static_cast<uint16_t>(static_cast<uint16_t>(high) - static_cast<uint16_t>(low));
+    const auto random = static_cast<uint16_t>(next() >> 16);
+    // 16 random bits times span + 1, which is up to 2^16.
+    const auto pick = static_cast<uint16_t>((mul_u16(random, span) + random) >> 16);
+    return static_cast<int16_t>(static_cast<uint16_t>(static_cast<uint16_t>(low) + pick));
   }
 
  private:
