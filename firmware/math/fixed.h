@@ -12,8 +12,7 @@
 // Formats that one file alone needs are documented in that file.
 //
 // The AVR has an 8x8 multiplier and a 16-bit int: products here are built from 16x16 -> 32 bit
-// parts (25 cycles each there, by hand: gcc-avr 5.4 calls a helper of 50), never from 64-bit
-// integers, and every operand is widened by hand.
+// parts (45 cycles each there), never from 64-bit integers, and every operand is widened by hand.
 #pragma once
 
 #include <stdint.h>
@@ -21,11 +20,9 @@
 /// Keeps a function that is called dozens of times out of line where flash is scarce; of no effect
 /// on the host.
 #ifdef __AVR__
-#define SCREED_CONSTEXPR_OFF_AVR inline
 #define SCREED_OUT_OF_LINE __attribute__((noinline))
 #define SCREED_IN_LINE __attribute__((always_inline))
 #else
-#define SCREED_CONSTEXPR_OFF_AVR constexpr
 #define SCREED_OUT_OF_LINE
 #define SCREED_IN_LINE
 #endif
@@ -118,71 +115,25 @@ SCREED_OUT_OF_LINE constexpr int32_t add_sat_i32(int32_t a, int32_t b) {
   return b > 0 ? (a > INT32_MAX - b ? INT32_MAX : a + b) : (a < INT32_MIN - b ? INT32_MIN : a + b);
 }
 
-#ifdef __AVR__
-// In line, since gcc-avr calls its library for products of 16-bit numbers and saves registers for
-// that. The partial products of bytes are added at their places. The instruction of each says which
-// of its bytes carry a sign: muls both, mulsu the first, mul none. A signed one at 2^8 borrows from
-// the uppermost byte.
-#define SCREED_AVR_AT_2_8(instruction, x, y, borrow) \
-  instruction " %B[" x "], %A[" y "]\n\t" borrow     \
-              "add %B[result], r0\n\t"               \
-              "adc %C[result], r1\n\t"               \
-              "adc %D[result], %[zero]\n\t"
-#define SCREED_AVR_SIGNED_AT_2_8(x, y) \
-  SCREED_AVR_AT_2_8("mulsu", x, y, "sbc %D[result], %[zero]\n\t")
-#define SCREED_AVR_UNSIGNED_AT_2_8(x, y) SCREED_AVR_AT_2_8("mul", x, y, "")
-#define SCREED_AVR_PRODUCT(Result, registers, at_2_16, at_2_8_a, at_2_8_b) \
-  Result result;                                                           \
-  uint8_t zero;                                                            \
-  asm("clr %[zero]\n\t" at_2_16                                            \
-      " %B[a], %B[b]\n\t"                                                  \
-      "movw %C[result], r0\n\t"                                            \
-      "mul %A[a], %A[b]\n\t"                                               \
-      "movw %A[result], r0\n\t" at_2_8_a at_2_8_b "clr r1\n\t"             \
-      : [result] "=&r"(result), [zero] "=&r"(zero)                         \
-      : [a] registers(a), [b] registers(b)                                 \
-      : "r0");                                                             \
-  return result
-#endif
+// Out of line, since gcc-avr's multiplications take their factors in registers that are hard to
+// keep free where one is called.
 
 /// The exact 32-bit product of two 16-bit numbers.
-SCREED_CONSTEXPR_OFF_AVR int32_t mul_i16(int16_t a, int16_t b) {
-#ifdef __AVR__
-  SCREED_AVR_PRODUCT(int32_t, "a", "muls", SCREED_AVR_SIGNED_AT_2_8("a", "b"),
-                     SCREED_AVR_SIGNED_AT_2_8("b", "a"));
-#else
+SCREED_OUT_OF_LINE constexpr int32_t mul_i16(int16_t a, int16_t b) {
   return static_cast<int32_t>(a) * static_cast<int32_t>(b);
-#endif
 }
 
 /// The exact 32-bit product of two unsigned 16-bit numbers.
-SCREED_CONSTEXPR_OFF_AVR uint32_t mul_u16(uint16_t a, uint16_t b) {
-#ifdef __AVR__
-  SCREED_AVR_PRODUCT(uint32_t, "r", "mul", SCREED_AVR_UNSIGNED_AT_2_8("a", "b"),
-                     SCREED_AVR_UNSIGNED_AT_2_8("b", "a"));
-#else
+SCREED_OUT_OF_LINE constexpr uint32_t mul_u16(uint16_t a, uint16_t b) {
   return static_cast<uint32_t>(a) * b;
-#endif
 }
 
 namespace detail {
 
 /// Exact signed x unsigned product.
-SCREED_CONSTEXPR_OFF_AVR int32_t mul_su(int16_t a, uint16_t b) {
-#ifdef __AVR__
-  SCREED_AVR_PRODUCT(int32_t, "a", "mulsu", SCREED_AVR_SIGNED_AT_2_8("a", "b"),
-                     SCREED_AVR_UNSIGNED_AT_2_8("b", "a"));
-#else
+SCREED_OUT_OF_LINE constexpr int32_t mul_su(int16_t a, uint16_t b) {
   return static_cast<int32_t>(a) * static_cast<int32_t>(b);
-#endif
 }
-
-#ifdef __AVR__
-#undef SCREED_AVR_PRODUCT
-#undef SCREED_AVR_SIGNED_AT_2_8
-#undef SCREED_AVR_UNSIGNED_AT_2_8
-#undef SCREED_AVR_AT_2_8
-#endif
 
 /// floor(value / 2^16); a plain move on the AVR.
 SCREED_IN_LINE constexpr int16_t high_half(int32_t value) {
