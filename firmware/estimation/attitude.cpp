@@ -142,8 +142,7 @@ void AttitudeEstimator::update(const ImuSample& sample, bool may_be_at_rest) {
 /// Sets the shortest rotation that turns the measured acceleration upright. False: no acceleration
 /// to speak of.
 bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
-  uint32_t squared = 0;
-  for (const int16_t count : accel) squared += static_cast<uint32_t>(mul_i16(count, count));
+  const uint32_t squared = squared_length(accel);
   if (squared < kMinAccelSquared) return false;
   // For a = (ax, ay, az) of length n: q is along (n + az, ay, -ax, 0). Upside down that vanishes,
   // so then the pose is first rolled by half a turn, which changes the signs of ay and az and moves
@@ -267,9 +266,7 @@ void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int
 
 /// The field is that of the site, as far as its strength and its vertical part tell.
 bool AttitudeEstimator::trust(const RotationMatrix& to_earth, const int16_t (&mag)[3]) {
-  uint32_t squared = 0;
-  for (const int16_t count : mag) squared += static_cast<uint32_t>(mul_i16(count, count));
-  const int16_t seen[2] = {static_cast<int16_t>(isqrt32(squared) >> 2),
+  const int16_t seen[2] = {static_cast<int16_t>(isqrt32(squared_length(mag)) >> 2),
                            detail::high_half(dot_q14(to_earth.row[2], mag))};
   const bool learning =
       state_.mag_samples < kHeadingLimitedFrom || state_.mag_distrusted > kFieldRelearnTicks;

@@ -96,7 +96,13 @@ int16_t length_deficit_q24(const Quaternion& q) {
 }
 
 int32_t dot_q14(const int16_t (&row)[3], const int16_t (&v)[3]) {
-  return mul_i16(row[0], v[0]) + mul_i16(row[1], v[1]) + mul_i16(row[2], v[2]);
+  uint32_t sum = 0;  // wraps where it is a squared length
+  for (uint8_t i = 0; i < 3; ++i) sum += static_cast<uint32_t>(mul_i16(row[i], v[i]));
+  return static_cast<int32_t>(sum);
+}
+
+uint32_t squared_length(const int16_t (&v)[3]) {
+  return static_cast<uint32_t>(dot_q14(v, v));
 }
 
 }  // namespace screed

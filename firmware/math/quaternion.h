@@ -53,6 +53,9 @@ RotationMatrix rotation_matrix(const Quaternion& q);
 /// int16; error 1e-4.
 int16_t length_deficit_q24(const Quaternion& q);
 
+/// |v|^2, right for every v.
+uint32_t squared_length(const int16_t (&v)[3]);
+
 /// row . v: raw counts turned by a rotation matrix, in counts with 14 binary digits. Fits 32 bits
 /// for every v.
 int32_t dot_q14(const int16_t (&row)[3], const int16_t (&v)[3]);
