@@ -224,15 +224,14 @@ void AttitudeEstimator::learn_bias_in_motion(const RotationMatrix& to_earth,
 /// Turns the orientation by what the gyroscope measured in this tick.
 void AttitudeEstimator::integrate(const int16_t (&gyro)[3]) {
   int32_t exact[3];
-  int32_t squared = 0;  // of the half angle, 34 digits: below 0.13
   for (uint8_t i = 0; i < 3; ++i) {
     exact[i] = detail::mul_su(gyro[i], kHalfAnglePerCount) - state_.bias[i] +
                static_cast<int32_t>(state_.carry[i]);
     state_.half_angle[i] = detail::high_half(exact[i]);
-    squared += mul_i16(state_.half_angle[i], state_.half_angle[i]);
   }
   // With h the half angle and s = h^2: cos h - 1 = -s/2 and sin(h)/h - 1 = -s/6; at the gyroscope's
   // limit of 2000 dps about one axis the rest of the series changes the angle by 3e-5 of it.
+  const int32_t squared = dot_q14(state_.half_angle, state_.half_angle);  // 34 digits: below 0.13
   const int16_t s = detail::high_half(squared + 0x8000);                 // 18 digits
   const int16_t shrink = detail::high_half(mul_i16(s, 10923) + 0x8000);  // s / 6, 18 digits
   int16_t sine[3];
