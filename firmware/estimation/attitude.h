@@ -97,21 +97,23 @@ class AttitudeEstimator {
     Quaternion orientation;
     int32_t gravity[3];  // filtered acceleration in the earth frame, counts, 14 binary digits
     int32_t slope[3];    // change of gravity a tick, counts, 22 binary digits
-    int32_t bias[3];     // half angle in radians a tick, 33 binary digits
-    int32_t mean[6];     // short means for the rest detection, counts, 14 binary digits: gyro,
-                         // then accelerometer
-    int32_t yaw_rate;
-    uint16_t
-        carry[3];  // what the last tick's rotation lost to rounding, half angle, 33 binary digits
-    int16_t half_angle[3];    // rotation of this tick, half angle in radians, 17 binary digits
+    // What is read one by one: the AVR reaches 63 bytes far from a pointer.
     uint16_t ticks;           // since the alignment, stops at kStartTicks; 0: not aligned yet
     uint16_t mag_samples;     // taken in, stops at kHeadingStartSamples
     uint8_t mag_age;          // ticks since the last magnetometer sample
     uint8_t rest_ticks;       // stops at kRestTicks
     uint8_t bias_samples;     // taken at rest, stops at kBiasTicks
     bool known;               // gravity has been averaged once
-    int16_t field[2];         // the site's magnetic field: strength and vertical part, 4 counts
     uint16_t mag_distrusted;  // ticks since the magnetometer was last trusted, stops at its end
+    int32_t yaw_rate;
+    int16_t field[2];  // the site's magnetic field: strength and vertical part, 4 counts
+    // What loops read.
+    int32_t bias[3];  // half angle in radians a tick, 33 binary digits
+    int32_t mean[6];  // short means for the rest detection, counts, 14 binary digits: gyro, then
+                      // accelerometer
+    uint16_t
+        carry[3];  // what the last tick's rotation lost to rounding, half angle, 33 binary digits
+    int16_t half_angle[3];  // rotation of this tick, half angle in radians, 17 binary digits
   };
 
   bool align(const int16_t (&accel)[3]);
