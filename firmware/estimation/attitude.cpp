@@ -223,25 +223,24 @@ void AttitudeEstimator::learn_bias_in_motion(const RotationMatrix& to_earth,
 
 /// Turns the orientation by what the gyroscope measured in this tick.
 void AttitudeEstimator::integrate(const int16_t (&gyro)[3]) {
-  int32_t exact[3];
   for (uint8_t i = 0; i < 3; ++i) {
-    exact[i] = detail::mul_su(gyro[i], kHalfAnglePerCount) - state_.bias[i] +
-               static_cast<int32_t>(state_.carry[i]);
-    state_.half_angle[i] = detail::high_half(exact[i]);
+    int32_t& exact = state_.exact[i];
+    exact = detail::mul_su(gyro[i], kHalfAnglePerCount) - state_.bias[i] +
+            static_cast<int32_t>(detail::low_half(exact));
+    state_.half_angle[i] = detail::high_half(exact);
   }
   // With h the half angle and s = h^2: cos h - 1 = -s/2 and sin(h)/h - 1 = -s/6; at the gyroscope's
   // limit of 2000 dps about one axis the rest of the series changes the angle by 3e-5 of it.
   const int32_t squared = dot_q14(state_.half_angle, state_.half_angle);  // 34 digits: below 0.13
   const int16_t s = detail::high_half(squared + 0x8000);                 // 18 digits
   const int16_t shrink = detail::high_half(mul_i16(s, 10923) + 0x8000);  // s / 6, 18 digits
-  int16_t sine[3];
-  for (uint8_t i = 0; i < 3; ++i) {
-    exact[i] -= asr_round(scale_q16(exact[i], shrink), 2);
-    state_.carry[i] = detail::low_half(exact[i]);
-    sine[i] = detail::high_half(exact[i]);
+  SmallQuaternion change;                                                // 17 digits
+  change.w = static_cast<int16_t>(-asr_i16(s, 2));
+  int16_t* sine = &change.x;
+  for (int32_t& exact : state_.exact) {
+    exact -= asr_round(scale_q16(exact, shrink), 2);
+    *sine++ = detail::high_half(exact);
   }
-  const SmallQuaternion change = {static_cast<int16_t>(-asr(s, 2)), sine[0], sine[1],
-                                  sine[2]};                              // 17 digits
   const Quaternion turned = scaled_product(state_.orientation, change);  // Q31
   for (uint8_t i = 0; i < 4; ++i)
     components(state_.orientation)[i] += asr(components(turned)[i], 1);

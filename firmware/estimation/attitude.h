@@ -111,8 +111,9 @@ class AttitudeEstimator {
     int32_t bias[3];  // half angle in radians a tick, 33 binary digits
     int32_t mean[6];  // short means for the rest detection, counts, 14 binary digits: gyro, then
                       // accelerometer
-    uint16_t
-        carry[3];  // what the last tick's rotation lost to rounding, half angle, 33 binary digits
+    // Rotation of this tick, half angle, 33 binary digits; the lower half, which rounding to 17
+    // takes, is carried into the next tick.
+    int32_t exact[3];
     int16_t half_angle[3];  // rotation of this tick, half angle in radians, 17 binary digits
   };
 
