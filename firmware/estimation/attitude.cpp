@@ -232,18 +232,16 @@ void AttitudeEstimator::integrate(const int16_t (&gyro)[3]) {
   // With h the half angle and s = h^2: cos h - 1 = -s/2 and sin(h)/h - 1 = -s/6; at the gyroscope's
   // limit of 2000 dps about one axis the rest of the series changes the angle by 3e-5 of it.
   const int32_t squared = dot_q14(state_.half_angle, state_.half_angle);  // 34 digits: below 0.13
-  const int16_t s = detail::high_half(squared + 0x8000);                 // 18 digits
-  const int16_t shrink = detail::high_half(mul_i16(s, 10923) + 0x8000);  // s / 6, 18 digits
-  SmallQuaternion change;                                                // 17 digits
+  const int16_t s = detail::high_half(squared + 0x8000);                  // 18 digits
+  const int16_t shrink = detail::high_half(mul_i16(s, 10923) + 0x8000);   // s / 6, 18 digits
+  SmallQuaternion change;                                                 // 17 digits
   change.w = static_cast<int16_t>(-asr_i16(s, 2));
   int16_t* sine = &change.x;
   for (int32_t& exact : state_.exact) {
     exact -= asr_round(scale_q16(exact, shrink), 2);
     *sine++ = detail::high_half(exact);
   }
-  const Quaternion turned = scaled_product(state_.orientation, change);  // Q31
-  for (uint8_t i = 0; i < 4; ++i)
-    components(state_.orientation)[i] += asr(components(turned)[i], 1);
+  turn_by_sensor(state_.orientation, change);
 }
 
 void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int16_t (&accel)[3]) {
@@ -293,9 +291,7 @@ int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
       0) {  // the first sample may be any angle away: turned at once and exactly
     state_.mag_samples = 1;
     const Angle half = static_cast<Angle>(asr(error, 1));
-    const Quaternion turned =
-        scaled_reverse_product({cos_q15(half), 0, 0, sin_q15(half)}, state_.orientation);
-    for (uint8_t i = 0; i < 4; ++i) components(state_.orientation)[i] = components(turned)[i] * 2;
+    turn_at_once(state_.orientation, {cos_q15(half), 0, 0, sin_q15(half)});
     return 0;
   }
   const auto gain = state_.mag_samples < kHeadingStartSamples
@@ -311,10 +307,7 @@ int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
 /// Turns the estimate about the earth's axes, and the filtered gravity with it, so that nothing is
 /// corrected twice.
 void AttitudeEstimator::correct(const SmallQuaternion& correction) {
-  const Quaternion turned = scaled_reverse_product(correction, state_.orientation);  // Q38
-  for (uint8_t i = 0; i < 4; ++i) {
-    components(state_.orientation)[i] += asr_round(components(turned)[i], 8);
-  }
+  turn_by_earth(state_.orientation, correction);
   // Only the vertical component moves anything: the others are what is left of the last correction.
   // Doubled for the whole angle; with the digits of scale_q16 and Q24 that leaves 2^7.
   state_.gravity[0] += asr_round(scale_q16(state_.gravity[2], correction.y) * 2, 8);

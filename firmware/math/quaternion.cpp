@@ -37,34 +37,44 @@ SCREED_OUT_OF_LINE void mirrored(int16_t a, int16_t b, int16_t c, int16_t d, int
 constexpr uint16_t kMinusOfProduct = 0x428E;
 constexpr uint16_t kMinusOfReverseProduct = 0x284E;
 
-SCREED_OUT_OF_LINE Quaternion product(const Quaternion& q, const SmallQuaternion& change,
-                                      uint16_t minus) {
+/// How a product becomes part of an orientation.
+enum Turn : uint8_t {
+  kAddHalf,  ///< half of it is added, rounded down
+  kAddPart,  ///< 2^-8 of it is added, rounded to nearest
+  kReplace,  ///< twice of it is the orientation
+};
+
+SCREED_OUT_OF_LINE void turn(Quaternion& q, const SmallQuaternion& change, uint16_t minus,
+                             Turn how) {
   static_assert(
       sizeof(Quaternion) == 4 * sizeof(int32_t) && sizeof(SmallQuaternion) == 4 * sizeof(int16_t),
       "components lie side by side");
-  const int32_t* const a = components(q);
+  const Quaternion before = q;
+  const int32_t* const a = components(before);
   const int16_t* const b = &change.w;
-  Quaternion result;
-  int32_t* at = components(result);
+  int32_t* at = components(q);
   for (uint8_t i = 0; i < 4; ++i, ++at) {
     int32_t sum = 0;
     for (uint8_t j = 0; j < 4; ++j, minus = static_cast<uint16_t>(minus >> 1)) {
       const int32_t term = scale_q16(a[j], b[i ^ j]);
       sum = (minus & 1U) != 0 ? sum - term : sum + term;
     }
-    *at = sum;
+    *at = how == kReplace ? sum * 2 : how == kAddHalf ? *at + asr(sum, 1) : *at + asr_round(sum, 8);
   }
-  return result;
 }
 
 }  // namespace
 
-Quaternion scaled_product(const Quaternion& q, const SmallQuaternion& change) {
-  return product(q, change, kMinusOfProduct);
+void turn_by_sensor(Quaternion& q, const SmallQuaternion& change) {
+  turn(q, change, kMinusOfProduct, kAddHalf);
 }
 
-Quaternion scaled_reverse_product(const SmallQuaternion& change, const Quaternion& q) {
-  return product(q, change, kMinusOfReverseProduct);
+void turn_by_earth(Quaternion& q, const SmallQuaternion& change) {
+  turn(q, change, kMinusOfReverseProduct, kAddPart);
+}
+
+void turn_at_once(Quaternion& q, const SmallQuaternion& rotation) {
+  turn(q, rotation, kMinusOfReverseProduct, kReplace);
 }
 
 RotationMatrix rotation_matrix(const Quaternion& q) {

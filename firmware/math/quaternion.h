@@ -39,12 +39,17 @@ struct RotationMatrix {
   int16_t row[3][3];
 };
 
-/// Hamilton product q change / 2^16, each of its 16 terms rounded to nearest: Q30 in, Q(30 + n -
-/// 16) out for a change in Qn. The length of the change must be below 32768, that of q at most 1.9.
-Quaternion scaled_product(const Quaternion& q, const SmallQuaternion& change);
+// Products of an orientation and a change, each of the 16 terms rounded to nearest in 16 digits
+// more than the change has. The length of the change must be below 32768, that of q at most 1.9.
 
-/// change q / 2^16, likewise: a change seen from the earth.
-Quaternion scaled_reverse_product(const SmallQuaternion& change, const Quaternion& q);
+/// q += q change, a change in Q17 as the sensor sees it; rounded down.
+void turn_by_sensor(Quaternion& q, const SmallQuaternion& change);
+
+/// q += change q, a change in Q24 as it is seen from the earth; rounded to nearest.
+void turn_by_earth(Quaternion& q, const SmallQuaternion& change);
+
+/// q = rotation q, a rotation in Q15 as it is seen from the earth.
+void turn_at_once(Quaternion& q, const SmallQuaternion& rotation);
 
 /// The matrix of a unit quaternion; error of an element below 4 units (2.4e-4).
 RotationMatrix rotation_matrix(const Quaternion& q);

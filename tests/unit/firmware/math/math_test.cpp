@@ -175,7 +175,14 @@ Real unit(Numbers& numbers) {
   }
 }
 
-TEST(QuaternionMath, ScaledProductIsTheHamiltonProduct) {
+Real hamilton_product(const Real& a, const Real& b) {
+  return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+          a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+          a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+          a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+}
+
+TEST(QuaternionMath, TurnsAreHamiltonProducts) {
   Numbers numbers;
   for (int i = 0; i < 20000; ++i) {
     const Quaternion q = fixed_of(unit(numbers));
@@ -186,12 +193,21 @@ TEST(QuaternionMath, ScaledProductIsTheHamiltonProduct) {
     const SmallQuaternion c = {small(0), small(1), small(2), small(3)};
     const Real a = real_of(q);
     const Real b = {c.w / 65536.0, c.x / 65536.0, c.y / 65536.0, c.z / 65536.0};
-    const Real expected = {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-                           a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-                           a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-                           a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
-    const Real got = real_of(scaled_product(q, c));
-    for (std::size_t k = 0; k < 4; ++k) ASSERT_NEAR(got[k], expected[k], 2.01 / kQ30One);
+    const Real product = hamilton_product(a, b);
+    const Real reverse = hamilton_product(b, a);
+    Quaternion by_sensor = q;
+    Quaternion by_earth = q;
+    Quaternion at_once = q;
+    turn_by_sensor(by_sensor, c);
+    turn_by_earth(by_earth, c);
+    turn_at_once(at_once, c);
+    for (std::size_t k = 0; k < 4; ++k) {
+      // Four terms rounded to nearest; then half of them rounded down, 2^-8 rounded to nearest.
+      const double halved = real_of(by_sensor)[k] - a[k];
+      ASSERT_NEAR(halved, product[k] / 2.0 - 0.25 / kQ30One, 1.255 / kQ30One);
+      ASSERT_NEAR(real_of(by_earth)[k] - a[k], reverse[k] / 256.0, 0.51 / kQ30One);
+      ASSERT_NEAR(real_of(at_once)[k] / 2.0, reverse[k], 2.01 / kQ30One);
+    }
   }
 }
 
