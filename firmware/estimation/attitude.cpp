@@ -309,9 +309,9 @@ int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
 void AttitudeEstimator::correct(const SmallQuaternion& correction) {
   turn_by_earth(state_.orientation, correction);
   // Only the vertical component moves anything: the others are what is left of the last correction.
-  // Doubled for the whole angle; with the digits of scale_q16 and Q24 that leaves 2^7.
-  state_.gravity[0] += asr_round(scale_q16(state_.gravity[2], correction.y) * 2, 8);
-  state_.gravity[1] -= asr_round(scale_q16(state_.gravity[2], correction.x) * 2, 8);
+  // For the whole angle; with the digits of scale_q16 and Q24 that leaves 2^7.
+  state_.gravity[0] += asr_round(scale_q16(state_.gravity[2], correction.y), 7);
+  state_.gravity[1] -= asr_round(scale_q16(state_.gravity[2], correction.x), 7);
   // Gravity that does not point up any more is a lost attitude (tumbling beyond the gyroscope's
   // range): start again.
   if (state_.gravity[2] < (kCountsPerG / 4) << kGravityBits) {
