@@ -145,23 +145,22 @@ bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
   const uint32_t squared = squared_length(accel);
   if (squared < kMinAccelSquared) return false;
   // For a = (ax, ay, az) of length n: q is along (n + az, ay, -ax, 0). Upside down that vanishes,
-  // so then the pose is first rolled by half a turn, which changes the signs of ay and az and moves
-  // the components.
-  const bool upside_down = accel[2] < 0;
-  const int32_t ay = upside_down ? -static_cast<int32_t>(accel[1]) : static_cast<int32_t>(accel[1]);
+  // so then the pose is first rolled by half a turn, which changes the signs of ay and az and swaps
+  // the components in pairs, with a minus at the first and at the last.
+  const uint8_t upside_down = accel[2] < 0 ? 1 : 0;
   const auto az = static_cast<int32_t>(abs_i16(accel[2]));
-  // Quartered they fit 16 bits, and the squares of clipped values 32.
-  const auto w = static_cast<int16_t>(asr(isqrt32(squared) + az, 2));
-  const auto x = static_cast<int16_t>(asr(ay, 2));
-  const auto y = static_cast<int16_t>(asr(-static_cast<int32_t>(accel[0]), 2));
-  const uint16_t length =
-      isqrt32(static_cast<uint32_t>(mul_i16(w, w) + mul_i16(x, x) + mul_i16(y, y)));
+  // Quartered they fit 16 bits, and the squares of clipped values 32. A count that changes its sign,
+  // once or twice, is rounded up.
+  constexpr int32_t kRoundUp = 3;
+  int16_t direction[3] = {static_cast<int16_t>(asr(isqrt32(squared) + az, 2)),
+                          static_cast<int16_t>(asr(accel[1] + kRoundUp * upside_down, 2)),
+                          static_cast<int16_t>(asr(accel[0] + kRoundUp, 2))};
+  if (upside_down == 0) direction[2] = static_cast<int16_t>(-direction[2]);
+  const uint16_t length = isqrt32(squared_length(direction));
   const auto scale = static_cast<int32_t>(
       quotient_u32(static_cast<uint32_t>(kQ30One), static_cast<uint16_t>(length + 1U)));
-  const SmallQuaternion direction =
-      upside_down ? SmallQuaternion{static_cast<int16_t>(-x), w, 0, static_cast<int16_t>(-y)}
-                  : SmallQuaternion{w, x, y, 0};
-  for (uint8_t i = 0; i < 4; ++i) components(state_.orientation)[i] = (&direction.w)[i] * scale;
+  int32_t* const q = components(state_.orientation);
+  for (uint8_t i = 0; i < 4; ++i) q[i ^ upside_down] = i == 3 ? 0 : direction[i] * scale;
   state_.gravity[0] = 0;
   state_.gravity[1] = 0;
   state_.gravity[2] = kCountsPerG << kGravityBits;
