@@ -100,7 +100,8 @@ int16_t length_deficit_q24(const Quaternion& q) {
   for (uint8_t i = 0; i < 4; ++i) {
     const int16_t high = detail::high_half(component[i]);
     const uint16_t low = detail::low_half(component[i]);
-    deficit -= mul_i16(high, high) + detail::high_half(detail::mul_su(high, low)) * 2;
+    deficit -= mul_i16(high, high);
+    deficit -= detail::high_half(detail::mul_su(high, low)) * 2;
   }
   return saturate_i16(asr_round(deficit, 5));
 }
