@@ -149,8 +149,8 @@ bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
   // the components in pairs, with a minus at the first and at the last.
   const uint8_t upside_down = accel[2] < 0 ? 1 : 0;
   const auto az = static_cast<int32_t>(abs_i16(accel[2]));
-  // Quartered they fit 16 bits, and the squares of clipped values 32. A count that changes its sign,
-  // once or twice, is rounded up.
+  // Quartered they fit 16 bits, and the squares of clipped values 32. A count that changes its
+  // sign, once or twice, is rounded up.
   constexpr int32_t kRoundUp = 3;
   int16_t direction[3] = {static_cast<int16_t>(asr(isqrt32(squared) + az, 2)),
                           static_cast<int16_t>(asr(accel[1] + kRoundUp * upside_down, 2)),
@@ -293,13 +293,13 @@ int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
     turn_at_once(state_.orientation, {cos_q15(half), 0, 0, sin_q15(half)});
     return 0;
   }
-  const auto gain = state_.mag_samples < kHeadingStartSamples
-                        ? static_cast<int16_t>(kHalfAnglePerAngle / (state_.mag_samples + 1U))
-                        : static_cast<int16_t>(kHeadingGain * age);
-  const auto limit = state_.mag_samples < kHeadingLimitedFrom
-                         ? kMaxHalfAngle
-                         : static_cast<int16_t>(kHeadingRateLimit * age);
-  if (state_.mag_samples < kHeadingStartSamples) ++state_.mag_samples;
+  auto gain = static_cast<int16_t>(kHeadingGain * age);
+  auto limit = static_cast<int16_t>(kHeadingRateLimit * age);
+  if (state_.mag_samples < kHeadingLimitedFrom) limit = kMaxHalfAngle;
+  if (state_.mag_samples < kHeadingStartSamples) {
+    ++state_.mag_samples;
+    gain = static_cast<int16_t>(kHalfAnglePerAngle / state_.mag_samples);
+  }
   return limit_i16(asr_round(mul_i16(error, gain), 6), limit);
 }
 
