@@ -43,9 +43,8 @@ void PositionEstimate::update(int16_t counts_left, int16_t counts_right, Angle h
   const auto scale = static_cast<int16_t>(static_cast<uint16_t>((share + 1) * 131) >> 1);
   const int32_t travel = scale_q16(both, scale);
   const int32_t horizontal = times_q15(travel, cos_q15(pitch));
-  const int16_t direction[2] = {cos_q15(heading), sin_q15(heading)};
-  for (uint8_t axis = 0; axis < 2; ++axis)
-    state_.place[axis] += times_q15(horizontal, direction[axis]);
+  state_.place[kX] += times_q15(horizontal, cos_q15(heading));
+  state_.place[kY] += times_q15(horizontal, sin_q15(heading));
 
   // Of both tracks, so that a turn on the spot makes the place uncertain as well. In 16 um: 16000
   // of it, 128 mm of both, make the parameter's unit; in Q16 that is 4.1 for each, taken as 4.
