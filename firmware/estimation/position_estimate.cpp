@@ -93,7 +93,7 @@ bool PositionEstimate::measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm, uin
 
 void PositionEstimate::get(Place& place) const {
   for (uint8_t axis = 0; axis < 2; ++axis) {
-    place.mm[axis] = short_mm(axis);
+    place.mm[axis] = limit_i16(asr(state_.place[axis], 13), INT16_MAX);
     place.sigma[axis] = static_cast<uint8_t>(isqrt32(state_.variance[axis]) >> 8);
   }
 }

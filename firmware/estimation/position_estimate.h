@@ -61,8 +61,6 @@ class PositionEstimate {
     uint32_t variance[2];  ///< 16 mm^2, Q16: up to 724 mm of standard deviation
   };
 
-  int16_t short_mm(uint8_t axis) const { return limit_i16(mm(axis), INT16_MAX); }
-
   State state_{};
   uint16_t count_um_q4_;
   uint16_t noise_x4_;  ///< of 125 mm^2 a metre: 16 mm^2 for 128 mm
