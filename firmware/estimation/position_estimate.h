@@ -52,7 +52,7 @@ class PositionEstimate {
   /// Position and deviation now.
   SCREED_OUT_OF_LINE void get(Place& place) const;
   /// Along an axis, also beyond what a Place holds, mm. Wraps at +-262 m.
-  SCREED_OUT_OF_LINE int32_t mm(uint8_t axis) const { return asr(state_.place[axis], 13); }
+  int32_t mm(uint8_t axis) const { return asr(state_.place[axis], 13); }
 
  private:
   /// Zero after a reset.
