@@ -8,28 +8,9 @@ namespace screed {
 
 namespace {
 
-/// A Q30 component, at most 1 in magnitude, as Q14, rounded.
-SCREED_OUT_OF_LINE int16_t q14_from_q30(int32_t value) {
-  return detail::high_half(value + 0x8000);
-}
-
 /// 2 sum in Q14, rounded, of a sum of two Q14 x Q14 products; |sum| <= 1.
 SCREED_OUT_OF_LINE int16_t twice(int32_t sum) {
   return detail::high_half(sum * 8 + 0x8000);
-}
-
-SCREED_OUT_OF_LINE int16_t diagonal(int16_t a, int16_t b) {
-  constexpr int32_t kHalf = static_cast<int32_t>(1) << 27;  // Q28
-  return twice(kHalf - mul_i16(a, a) - mul_i16(b, b));
-}
-
-/// Two elements that mirror each other: 2 (a b + c d) and 2 (a b - c d).
-SCREED_OUT_OF_LINE void mirrored(int16_t a, int16_t b, int16_t c, int16_t d, int16_t* plus,
-                                 int16_t* minus) {
-  const int32_t ab = mul_i16(a, b);
-  const int32_t cd = mul_i16(c, d);
-  *plus = twice(ab + cd);
-  *minus = twice(ab - cd);
 }
 
 // Component i of a product is the sum of all +-a[j] b[i ^ j]; written out that is 450 bytes longer
@@ -78,17 +59,27 @@ void turn_at_once(Quaternion& q, const SmallQuaternion& rotation) {
 }
 
 RotationMatrix rotation_matrix(const Quaternion& q) {
-  const int16_t w = q14_from_q30(q.w);
-  const int16_t x = q14_from_q30(q.x);
-  const int16_t y = q14_from_q30(q.y);
-  const int16_t z = q14_from_q30(q.z);
+  // In Q14, rounded: w, x, y, z, x, y. Of the axes a, b and c = x, y, z; y, z, x; z, x, y element
+  // (a, a) is 1 - 2 (b b + c c), and (b, a) and (a, b) are 2 (a b + w c) and 2 (a b - w c).
+  int16_t part[6];
+  for (uint8_t i = 0; i < 4; ++i) part[i] = detail::high_half(components(q)[i] + 0x8000);
+  part[4] = part[1];
+  part[5] = part[2];
+  constexpr int32_t kHalf = static_cast<int32_t>(1) << 27;  // Q28
   RotationMatrix matrix;
-  matrix.row[0][0] = diagonal(y, z);
-  matrix.row[1][1] = diagonal(x, z);
-  matrix.row[2][2] = diagonal(x, y);
-  mirrored(x, y, w, z, &matrix.row[1][0], &matrix.row[0][1]);
-  mirrored(x, z, w, y, &matrix.row[0][2], &matrix.row[2][0]);
-  mirrored(y, z, w, x, &matrix.row[2][1], &matrix.row[1][2]);
+  for (uint8_t i = 0; i < 3; ++i) {
+    int16_t* const diagonal = &matrix.row[i][i];
+    int16_t* const below = i == 2 ? &matrix.row[0][2] : &matrix.row[i + 1][i];
+    int16_t* const right = i == 2 ? &matrix.row[2][0] : &matrix.row[i][i + 1];
+    const int16_t a = part[i + 1];
+    const int16_t b = part[i + 2];
+    const int16_t c = part[i + 3];
+    *diagonal = twice(kHalf - (mul_i16(b, b) + mul_i16(c, c)));
+    const int32_t ab = mul_i16(a, b);
+    const int32_t wc = mul_i16(part[0], c);
+    *below = twice(ab + wc);
+    *right = twice(ab - wc);
+  }
   return matrix;
 }
 
