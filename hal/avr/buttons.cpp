@@ -1,9 +1,9 @@
 // The user's push buttons: each connects its pin to ground.
 #include "hal/avr/buttons.h"
 
-#include <util/atomic.h>
 #include <util/delay.h>
 
+#include "hal/avr/interrupts_off.h"
 #include "pins.h"
 
 namespace screed {
@@ -41,7 +41,8 @@ bool button_a_held() {
 uint8_t buttons_read() {
   uint8_t held = ButtonAPin::is_high() ? 0 : kButtonA;
   // The Arduino core's USB interrupts write to the same pins (its "TX" and "RX" LEDs).
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const InterruptsOff interrupts_off;
     const SharedPin<ButtonBPin> b;
     const SharedPin<ButtonCPin> c;
     _delay_us(3);  // until the pull-up has charged the pin (Pololu's library waits as long)

@@ -4,7 +4,8 @@
 #include <avr/io.h>
 #include <avr/pgmspace.h>
 #include <string.h>
-#include <util/atomic.h>
+
+#include "hal/avr/interrupts_off.h"
 
 namespace screed {
 
@@ -44,7 +45,8 @@ void eeprom_step() {
   if (writing.left == 0 || (EECR & _BV(EEPE)) != 0) return;
   EEAR = writing.address++;
   EEDR = *writing.next++;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {  // EEPE counts within four cycles after EEMPE
+  {
+    const InterruptsOff interrupts_off;  // EEPE counts within four cycles after EEMPE
     EECR = _BV(EEMPE);
     EECR = _BV(EEMPE) | _BV(EEPE);
   }

@@ -3,8 +3,8 @@
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
-#include <util/atomic.h>
 
+#include "hal/avr/interrupts_off.h"
 #include "hal/avr/quadrature.h"
 #include "pins.h"
 
@@ -57,7 +57,8 @@ void encoders_init() {
 
 EncoderCounts encoders_read() {
   EncoderCounts counts;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const InterruptsOff interrupts_off;
     counts.left = state.left.count;
     counts.right = state.right.count;
     if (state.edges >= kMaxEncoderEdges) {

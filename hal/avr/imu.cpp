@@ -3,8 +3,8 @@
 
 #include <avr/pgmspace.h>
 #include <stdint.h>
-#include <util/atomic.h>
 
+#include "hal/avr/interrupts_off.h"
 #include "hal/avr/twi.h"
 #include "pins.h"
 
@@ -288,7 +288,8 @@ __attribute__((noinline)) void imu_start_round() {
 void imu_read(SensorSample& sample) {
   sample.fresh = 0;
   Phase phase = kIdle;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const InterruptsOff interrupts_off;
     phase = state.phase;
     if (phase != kRunning) state.phase = kReading;
   }
@@ -307,7 +308,8 @@ void imu_read(SensorSample& sample) {
   sample.chips_failing = chips_failing();
   sample.bus_errors = state.errors;
   state.arrived = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const InterruptsOff interrupts_off;
     state.phase = kIdle;
   }
 }

@@ -2,8 +2,8 @@
 #include "hal/avr/motors.h"
 
 #include <avr/io.h>
-#include <util/atomic.h>
 
+#include "hal/avr/interrupts_off.h"
 #include "hal/sample.h"
 #include "pins.h"
 
@@ -57,7 +57,8 @@ void motors_init() {
 }
 
 void motors_off() {
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const InterruptsOff interrupts_off;
     LEFT_DUTY_REGISTER = 0;
     RIGHT_DUTY_REGISTER = 0;
   }
@@ -71,7 +72,8 @@ void motors_drive(int16_t left, int16_t right) {
   // The old duty must not act in the new direction: duty off, end of the period, direction, new
   // duty.
   if (reverse_left || reverse_right) {
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    {
+      const InterruptsOff interrupts_off;
       if (reverse_left) LEFT_DUTY_REGISTER = 0;
       if (reverse_right) RIGHT_DUTY_REGISTER = 0;
     }
@@ -80,7 +82,8 @@ void motors_drive(int16_t left, int16_t right) {
     if (reverse_right) RightDirectionPin::write(right_drive.reverse);
   }
   // 16-bit registers share one buffer for their high bytes: no interrupt may write one in between.
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const InterruptsOff interrupts_off;
     LEFT_DUTY_REGISTER = left_drive.duty;
     RIGHT_DUTY_REGISTER = right_drive.duty;
   }

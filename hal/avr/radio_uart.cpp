@@ -4,7 +4,8 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <stdint.h>
-#include <util/atomic.h>
+
+#include "hal/avr/interrupts_off.h"
 
 namespace screed {
 
@@ -82,7 +83,8 @@ void radio_uart_init() {
 
 bool radio_uart_inject(const uint8_t* bytes, uint8_t count) {
   bool fits = false;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const InterruptsOff interrupts_off;
     fits = state.in.room() >= count;
     if (fits) {
       while (count-- != 0) state.in.put(*bytes++);
@@ -99,7 +101,8 @@ uint8_t radio_uart_read(uint8_t* bytes, uint8_t capacity) {
 
 void radio_uart_write(const uint8_t* bytes, uint8_t count) {
   if (count == 0) return;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const InterruptsOff interrupts_off;
     state.next = bytes;
     state.left = count;
     UCSR1B |= _BV(UDRIE1);

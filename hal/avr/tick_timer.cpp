@@ -4,9 +4,9 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/sleep.h>
-#include <util/atomic.h>
 
 #include "hal/avr/imu.h"
+#include "hal/avr/interrupts_off.h"
 #include "hal/avr/watchdog.h"
 #include "hal/sample.h"
 
@@ -31,7 +31,8 @@ State state;
 uint16_t counts_since_tick() {
   uint8_t missed = 0;
   uint16_t counts = 0;
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+  {
+    const InterruptsOff interrupts_off;
     counts = TCNT3;
     missed = state.ticks;
     if ((TIFR3 & _BV(OCF3A)) != 0) {  // the tick came in between
