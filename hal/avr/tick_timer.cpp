@@ -40,8 +40,11 @@ uint16_t counts_since_tick() {
       missed = static_cast<uint8_t>(missed + 1);
     }
   }
-  const uint32_t all = static_cast<uint32_t>(missed) * kCountsPerTick + counts;
-  return all > UINT16_MAX ? static_cast<uint16_t>(UINT16_MAX) : static_cast<uint16_t>(all);
+  for (; missed != 0; --missed) {
+    if (counts > UINT16_MAX - kCountsPerTick) return UINT16_MAX;
+    counts = static_cast<uint16_t>(counts + kCountsPerTick);
+  }
+  return counts;
 }
 
 }  // namespace
@@ -77,10 +80,10 @@ void tick_timer_wait() {
     SMCR = 0;
     cli();
   }
-  const uint8_t ticks = state.ticks;
+  uint8_t ticks = state.ticks;
   state.ticks = 0;
   sei();
-  state.time_us += static_cast<uint32_t>(ticks) * kTickPeriod_us;
+  for (; ticks != 0; --ticks) state.time_us += kTickPeriod_us;
 }
 
 uint32_t tick_timer_time_us() {
