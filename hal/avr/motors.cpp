@@ -3,6 +3,7 @@
 
 #include <avr/io.h>
 
+#include "firmware/math/fixed.h"
 #include "hal/avr/interrupts_off.h"
 #include "hal/sample.h"
 #include "pins.h"
@@ -16,12 +17,9 @@ struct Drive {
   bool reverse;
 };
 
-__attribute__((noinline)) Drive drive_from(int16_t duty) {
-  if (duty < 0) {
-    return {duty < -kDutyMax ? static_cast<uint16_t>(kDutyMax) : static_cast<uint16_t>(-duty),
-            true};
-  }
-  return {duty > kDutyMax ? static_cast<uint16_t>(kDutyMax) : static_cast<uint16_t>(duty), false};
+Drive drive_from(int16_t duty) {
+  const uint16_t size = abs_i16(duty);
+  return {size > kDutyMax ? static_cast<uint16_t>(kDutyMax) : size, duty < 0};
 }
 
 /// The compare registers are double buffered: a new duty counts from the end of the PWM period, 50
