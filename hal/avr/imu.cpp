@@ -137,18 +137,19 @@ bool configured(Chip chip) {
   return state.consecutive_good[chip] >= pgm_read_byte(&kNeeded[chip]);
 }
 
-void set_transfer(Step step, TwiTransfer& transfer) {
-  if (step <= kReadBaro) {
-    memcpy_P(&transfer, &kBursts[step], sizeof(Burst));
-    transfer.data = state.bursts[step];
+/// Prepares the transfer of this step.
+void set_transfer() {
+  if (state.step <= kReadBaro) {
+    memcpy_P(&twi_transfer, &kBursts[state.step], sizeof(Burst));
+    twi_transfer.data = state.bursts[state.step];
   } else {
     const Setting setting = current_setting();
-    transfer.address = chip_address(setting.chip);
-    transfer.reg = setting.reg;
-    transfer.size = 1;
-    transfer.data = &state.register_value;
+    twi_transfer.address = chip_address(setting.chip);
+    twi_transfer.reg = setting.reg;
+    twi_transfer.size = 1;
+    twi_transfer.data = &state.register_value;
   }
-  transfer.write = step == kRewriteSetting;
+  twi_transfer.write = state.step == kRewriteSetting;
 }
 
 /// Books what the check of a setting found; returns true when the register has to be written.
@@ -253,7 +254,7 @@ void take_baro(SensorSample& sample) {
 
 }  // namespace
 
-bool twi_done(bool ok, TwiTransfer& next) {
+bool twi_done(bool ok) {
   if (ok) {
     state.arrived = static_cast<uint8_t>(state.arrived | fresh_bit(state.step));
   } else {
@@ -264,7 +265,7 @@ bool twi_done(bool ok, TwiTransfer& next) {
     state.phase = kIdle;
     return false;
   }
-  set_transfer(state.step, next);
+  set_transfer();
   return true;
 }
 
@@ -280,9 +281,8 @@ __attribute__((noinline)) void imu_start_round() {
   state.step = kReadGyro;
   state.arrived = 0;
   state.round = static_cast<uint8_t>(state.round + 1);
-  TwiTransfer transfer;
-  set_transfer(kReadGyro, transfer);
-  twi_start(transfer);
+  set_transfer();
+  twi_start();
 }
 
 void imu_read(SensorSample& sample) {

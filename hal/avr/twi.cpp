@@ -24,24 +24,10 @@ constexpr uint8_t kIdle = _BV(TWEN);
 using Scl = Pin<kPortD, 0>;
 using Sda = Pin<kPortD, 1>;
 
-// Written by the main program only while no transfer runs, by the interrupt while one runs.
-struct State {
-  TwiTransfer transfer;
-  uint8_t* at;   // the next byte of transfer.data
-  uint8_t left;  // bytes from there on
-  bool register_sent;
-};
-State state;
-
-__attribute__((noinline)) void rewind() {
-  state.at = state.transfer.data;
-  state.left = state.transfer.size;
-  state.register_sent = false;
-}
+bool register_sent;
 
 void finish(bool ok) {
-  const bool more = twi_done(ok, state.transfer);
-  rewind();
+  const bool more = twi_done(ok);
   // With both bits set the hardware makes a stop condition and then a start condition.
   TWCR = more ? static_cast<uint8_t>(kGo | _BV(TWSTO) | _BV(TWSTA))
               : static_cast<uint8_t>(kGo | _BV(TWSTO));
@@ -49,16 +35,16 @@ void finish(bool ok) {
 
 /// Acknowledges every byte but the last.
 void receive_next() {
-  TWCR = state.left == 1 ? kGo : static_cast<uint8_t>(kGo | _BV(TWEA));
+  TWCR = twi_transfer.size == 1 ? kGo : static_cast<uint8_t>(kGo | _BV(TWEA));
 }
 
 void send_next() {
-  if (state.left == 0) {
+  if (twi_transfer.size == 0) {
     finish(true);
     return;
   }
-  --state.left;
-  TWDR = *state.at++;
+  --twi_transfer.size;
+  TWDR = *twi_transfer.data++;
   TWCR = kGo;
 }
 
@@ -69,25 +55,29 @@ void send(uint8_t byte) {
 
 }  // namespace
 
+// Written by the main program only while no transfer runs, by the interrupt while one runs.
+TwiTransfer twi_transfer;
+
 ISR(TWI_vect) {
   const uint8_t status = TW_STATUS;
   if (status == TW_MR_DATA_ACK) {  // first, since two of three interrupts are
-    *state.at++ = TWDR;
-    --state.left;
+    *twi_transfer.data++ = TWDR;
+    --twi_transfer.size;
     receive_next();
     return;
   }
-  const uint8_t address = static_cast<uint8_t>(state.transfer.address << 1);
+  const uint8_t address = static_cast<uint8_t>(twi_transfer.address << 1);
   switch (status) {
     case TW_START:
+      register_sent = false;
       send(address | TW_WRITE);
       break;
     case TW_MT_SLA_ACK:
     case TW_MT_DATA_ACK:  // simavr 1.6 answers with this to the address as well
-      if (!state.register_sent) {
-        state.register_sent = true;
-        send(state.transfer.reg);
-      } else if (state.transfer.write) {
+      if (!register_sent) {
+        register_sent = true;
+        send(twi_transfer.reg);
+      } else if (twi_transfer.write) {
         send_next();
       } else {
         TWCR = kGo | _BV(TWSTA);
@@ -100,7 +90,7 @@ ISR(TWI_vect) {
       receive_next();
       break;
     case TW_MR_DATA_NACK:
-      *state.at = TWDR;
+      *twi_transfer.data = TWDR;
       finish(true);
       break;
     default:  // no device, arbitration lost, bus error
@@ -118,9 +108,7 @@ void twi_init() {
   TWCR = kIdle;
 }
 
-void twi_start(const TwiTransfer& transfer) {
-  state.transfer = transfer;
-  rewind();
+void twi_start() {
   TWCR = kGo | _BV(TWSTA);
 }
 

@@ -15,19 +15,22 @@ struct TwiTransfer {
   uint8_t* data;  ///< must stay until the transfer has ended
 };
 
+/// What twi_start() and twi_done() begin. The driver counts `size` and `data` on as bytes travel.
+extern TwiTransfer twi_transfer;
+
 void twi_init();
 
-/// Starts a transfer. Only while none is running. Interrupts must be off.
-void twi_start(const TwiTransfer& transfer);
+/// Starts twi_transfer. Only while none is running. Interrupts must be off.
+void twi_start();
 
 /// Frees a bus that a device holds: drops the running transfer without twi_done(), clocks the bus
 /// up to nine times until the device lets go, makes a stop condition. Takes 120 us at most.
 void twi_recover();
 
 /// Called from the interrupt when a transfer has ended; `ok` when every byte was acknowledged.
-/// Defined by the user of the bus: fills in `next` and returns true to go on with another transfer
-/// at once.
-bool twi_done(bool ok, TwiTransfer& next);
+/// Defined by the user of the bus: fills in twi_transfer and returns true to go on with another
+/// one at once.
+bool twi_done(bool ok);
 
 }  // namespace avr
 }  // namespace screed
