@@ -108,20 +108,14 @@ struct State {
   uint8_t arrived;  // FreshBit set of the bursts that came whole in this round
   uint8_t bursts[kBurstCount][kVectorBytes];
   // The check of settings.
-  uint8_t setting;                   // the one checked in this round
+  uint8_t setting;                   // number of the one checked in this round
+  Setting checked;                   // that one
   uint8_t register_value;            // what was read, then what is to be written
   uint8_t consecutive_good[kChips];  // settings of a chip found right since the last wrong one
   uint8_t failing;                   // ChipBit set: the last burst did not come
   uint8_t errors;                    // transfers that failed
 };
 State state;
-
-/// The setting that is checked in this round.
-__attribute__((noinline)) Setting current_setting() {
-  Setting setting;
-  memcpy_P(&setting, &kSettings[state.setting], sizeof(setting));
-  return setting;
-}
 
 constexpr uint8_t settings_of(Chip chip, uint8_t from = 0) {
   return from == kSettingCount
@@ -143,9 +137,9 @@ void set_transfer() {
     memcpy_P(&twi_transfer, &kBursts[state.step], sizeof(Burst));
     twi_transfer.data = state.bursts[state.step];
   } else {
-    const Setting setting = current_setting();
-    twi_transfer.address = chip_address(setting.chip);
-    twi_transfer.reg = setting.reg;
+    memcpy_P(&state.checked, &kSettings[state.setting], sizeof(Setting));
+    twi_transfer.address = chip_address(state.checked.chip);
+    twi_transfer.reg = state.checked.reg;
     twi_transfer.size = 1;
     twi_transfer.data = &state.register_value;
   }
@@ -154,15 +148,14 @@ void set_transfer() {
 
 /// Books what the check of a setting found; returns true when the register has to be written.
 bool judge_setting(bool ok) {
-  const Setting setting = current_setting();
-  uint8_t& right = state.consecutive_good[setting.chip];
-  if (ok && state.register_value == setting.value) {
+  uint8_t& right = state.consecutive_good[state.checked.chip];
+  if (ok && state.register_value == state.checked.value) {
     if (right < kSettingCount) ++right;
     return false;
   }
   right = 0;
-  state.register_value = setting.value;
-  return ok && setting.reg != kWhoAmI;
+  state.register_value = state.checked.value;
+  return ok && state.checked.reg != kWhoAmI;
 }
 
 /// The step after `state.step`; false when the round is over.
