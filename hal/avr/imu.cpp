@@ -16,8 +16,14 @@ namespace screed {
 
 namespace avr {
 
-/// The chips, in the order in which a fault of one is reported.
-enum Chip : uint8_t { kAccelMagChip, kGyroChip, kBaroChip, kChips };
+/// The chips, by the bit that reports a fault of one.
+enum Chip : uint8_t {
+  kAccelMagChip = ChipBit::kAccelMagChip,
+  kGyroChip = ChipBit::kGyroChip,
+  kBaroChip = ChipBit::kBaroChip,
+};
+constexpr uint8_t kChipEnd = kBaroChip + 1;
+constexpr uint8_t kAllChips = kAccelMagChip | kGyroChip | (kHasBarometer ? kBaroChip : 0);
 
 constexpr uint8_t kLsm303dAddress = 0x1D;  // SA0 high, as Pololu's boards pull it
 constexpr uint8_t kL3gd20hAddress = 0x6B;
@@ -111,7 +117,8 @@ struct State {
   uint8_t setting;                   // number of the one checked in this round
   Setting checked;                   // that one
   uint8_t register_value;            // what was read, then what is to be written
-  uint8_t consecutive_good[kChips];  // settings of a chip found right since the last wrong one
+  uint8_t consecutive_good[kChipEnd];  // settings of a chip found right since the last wrong one
+  uint8_t unconfigured;              // ChipBit set: not all settings were found right
   uint8_t failing;                   // ChipBit set: the last burst did not come
   uint8_t errors;                    // transfers that failed
 };
@@ -124,12 +131,9 @@ constexpr uint8_t settings_of(Chip chip, uint8_t from = 0) {
                                     settings_of(chip, static_cast<uint8_t>(from + 1)));
 }
 
-/// All settings of the chip were found right, one after the other.
-bool configured(Chip chip) {
-  static constexpr uint8_t kNeeded[kChips] PROGMEM = {
-      settings_of(kAccelMagChip), settings_of(kGyroChip), settings_of(kBaroChip)};
-  return state.consecutive_good[chip] >= pgm_read_byte(&kNeeded[chip]);
-}
+/// How many settings a chip has.
+constexpr uint8_t kSettingsOf[kChipEnd] PROGMEM = {
+    0, settings_of(kAccelMagChip), settings_of(kGyroChip), 0, settings_of(kBaroChip)};
 
 /// Prepares the transfer of this step.
 void set_transfer() {
@@ -148,12 +152,17 @@ void set_transfer() {
 
 /// Books what the check of a setting found; returns true when the register has to be written.
 bool judge_setting(bool ok) {
-  uint8_t& right = state.consecutive_good[state.checked.chip];
+  const uint8_t chip = state.checked.chip;
+  uint8_t& right = state.consecutive_good[chip];
   if (ok && state.register_value == state.checked.value) {
     if (right < kSettingCount) ++right;
+    if (right >= pgm_read_byte(&kSettingsOf[chip])) {
+      state.unconfigured = static_cast<uint8_t>(state.unconfigured & ~chip);
+    }
     return false;
   }
   right = 0;
+  state.unconfigured = static_cast<uint8_t>(state.unconfigured | chip);
   state.register_value = state.checked.value;
   return ok && state.checked.reg != kWhoAmI;
 }
@@ -197,17 +206,6 @@ void record_result(bool ok) {
   state.failing = static_cast<uint8_t>(ok ? state.failing & ~bit : state.failing | bit);
 }
 
-uint8_t chips_failing() {
-  uint8_t failing = state.failing;
-  for (uint8_t chip = 0; chip < kChips; ++chip) {
-    if (!configured(static_cast<Chip>(chip))) failing = static_cast<uint8_t>(failing | 1U << chip);
-  }
-  return failing;
-}
-static_assert(ChipBit::kAccelMagChip == 1 << kAccelMagChip &&
-                  ChipBit::kGyroChip == 1 << kGyroChip && ChipBit::kBaroChip == 1 << kBaroChip,
-              "chips_failing relies on the order");
-
 int16_t word_at(const uint8_t* bytes) {
   return static_cast<int16_t>(bytes[0] |
                               static_cast<uint16_t>(static_cast<uint16_t>(bytes[1]) << 8));
@@ -226,7 +224,7 @@ void to_robot_frame(const uint8_t* bytes, int16_t (&vector)[3]) {
 
 void take_vector(const uint8_t (&burst)[kVectorBytes], Chip chip, FreshBit bit,
                  int16_t (&vector)[3], SensorSample& sample) {
-  if ((state.arrived & bit) == 0 || (burst[0] & kNewXyz) == 0 || !configured(chip)) return;
+  if ((state.arrived & bit) == 0 || (burst[0] & kNewXyz) == 0 || (state.unconfigured & chip) != 0) return;
   to_robot_frame(burst + 1, vector);
   sample.fresh = static_cast<uint8_t>(sample.fresh | bit);
 }
@@ -234,7 +232,7 @@ void take_vector(const uint8_t (&burst)[kVectorBytes], Chip chip, FreshBit bit,
 void take_baro(SensorSample& sample) {
   const uint8_t* const burst = state.bursts[kReadBaro];
   if ((state.arrived & kFreshBaro) == 0 || (burst[0] & kNewPressure) == 0 ||
-      !configured(kBaroChip)) {
+      (state.unconfigured & kBaroChip) != 0) {
     return;
   }
   const uint8_t sign = (burst[3] & 0x80U) != 0 ? 0xFF : 0x00;
@@ -263,6 +261,7 @@ bool twi_done(bool ok) {
 }
 
 void imu_init() {
+  state.unconfigured = kAllChips;
   // A reset may have come in the middle of a byte: the device still holds the bus.
   twi_recover();
 }
@@ -290,15 +289,14 @@ void imu_read(SensorSample& sample) {
   if (phase == kBusStuck) {
     twi_recover();
     state.arrived = 0;
-    state.failing =
-        ChipBit::kAccelMagChip | ChipBit::kGyroChip | (kHasBarometer ? ChipBit::kBaroChip : 0);
+    state.failing = kAllChips;
     state.errors = static_cast<uint8_t>(state.errors + 1);
   }
   take_vector(state.bursts[kReadGyro], kGyroChip, kFreshGyro, sample.imu.gyro(), sample);
   take_vector(state.bursts[kReadAccel], kAccelMagChip, kFreshAccel, sample.imu.accel(), sample);
   take_vector(state.bursts[kReadMag], kAccelMagChip, kFreshMag, sample.imu.mag(), sample);
   take_baro(sample);
-  sample.chips_failing = chips_failing();
+  sample.chips_failing = static_cast<uint8_t>(state.failing | state.unconfigured);
   sample.bus_errors = state.errors;
   state.arrived = 0;
   {
