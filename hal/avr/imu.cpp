@@ -212,7 +212,7 @@ int16_t word_at(const uint8_t* bytes) {
 }
 
 /// From the chip's axes to the robot's. An axis against the chip's turns -32768 into 32767.
-void to_robot_frame(const uint8_t* bytes, int16_t (&vector)[3]) {
+void to_robot_frame(const uint8_t* bytes, int16_t* vector) {
   for (uint8_t i = 0; i < 3; ++i) {
     const ChipAxis axis = kImuAxes[i];
     const int16_t value = word_at(bytes + 2 * axis.index);
@@ -222,11 +222,21 @@ void to_robot_frame(const uint8_t* bytes, int16_t (&vector)[3]) {
   }
 }
 
-void take_vector(const uint8_t (&burst)[kVectorBytes], Chip chip, FreshBit bit,
-                 int16_t (&vector)[3], SensorSample& sample) {
-  if ((state.arrived & bit) == 0 || (burst[0] & kNewXyz) == 0 || (state.unconfigured & chip) != 0) return;
-  to_robot_frame(burst + 1, vector);
-  sample.fresh = static_cast<uint8_t>(sample.fresh | bit);
+/// Gyro, accelerometer and magnetometer, in the order of their bursts and of ImuCounts.
+void take_vectors(SensorSample& sample) {
+  Chip chip = kGyroChip;
+  uint8_t bit = kFreshGyro;
+  int16_t* vector = sample.imu.all;
+  for (const uint8_t* burst = state.bursts[kReadGyro]; bit <= kFreshMag; burst += kVectorBytes) {
+    if ((state.arrived & bit) != 0 && (burst[0] & kNewXyz) != 0 &&
+        (state.unconfigured & chip) == 0) {
+      to_robot_frame(burst + 1, vector);
+      sample.fresh = static_cast<uint8_t>(sample.fresh | bit);
+    }
+    chip = kAccelMagChip;
+    bit = static_cast<uint8_t>(bit << 1);
+    vector += 3;
+  }
 }
 
 void take_baro(SensorSample& sample) {
@@ -292,9 +302,7 @@ void imu_read(SensorSample& sample) {
     state.failing = kAllChips;
     state.errors = static_cast<uint8_t>(state.errors + 1);
   }
-  take_vector(state.bursts[kReadGyro], kGyroChip, kFreshGyro, sample.imu.gyro(), sample);
-  take_vector(state.bursts[kReadAccel], kAccelMagChip, kFreshAccel, sample.imu.accel(), sample);
-  take_vector(state.bursts[kReadMag], kAccelMagChip, kFreshMag, sample.imu.mag(), sample);
+  take_vectors(sample);
   take_baro(sample);
   sample.chips_failing = static_cast<uint8_t>(state.failing | state.unconfigured);
   sample.bus_errors = state.errors;
