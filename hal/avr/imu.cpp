@@ -3,6 +3,7 @@
 
 #include <avr/pgmspace.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "hal/avr/interrupts_off.h"
 #include "hal/avr/twi.h"
@@ -114,13 +115,13 @@ struct State {
   uint8_t arrived;  // FreshBit set of the bursts that came whole in this round
   uint8_t bursts[kBurstCount][kVectorBytes];
   // The check of settings.
-  uint8_t setting;                   // number of the one checked in this round
-  Setting checked;                   // that one
-  uint8_t register_value;            // what was read, then what is to be written
+  uint8_t setting;                     // number of the one checked in this round
+  Setting checked;                     // that one
+  uint8_t register_value;              // what was read, then what is to be written
   uint8_t consecutive_good[kChipEnd];  // settings of a chip found right since the last wrong one
-  uint8_t unconfigured;              // ChipBit set: not all settings were found right
-  uint8_t failing;                   // ChipBit set: the last burst did not come
-  uint8_t errors;                    // transfers that failed
+  uint8_t unconfigured;                // ChipBit set: not all settings were found right
+  uint8_t failing;                     // ChipBit set: the last burst did not come
+  uint8_t errors;                      // transfers that failed
 };
 State state;
 
@@ -211,8 +212,19 @@ int16_t word_at(const uint8_t* bytes) {
                               static_cast<uint16_t>(static_cast<uint16_t>(bytes[1]) << 8));
 }
 
+/// The sensors lie in the robot with their axes along its own, as on both boards so far.
+constexpr bool lie_along_robot(uint8_t from = 0) {
+  return from == 3 || (kImuAxes[from].index == from && !kImuAxes[from].reversed &&
+                       lie_along_robot(static_cast<uint8_t>(from + 1)));
+}
+constexpr bool kLieAlongRobot = lie_along_robot();
+
 /// From the chip's axes to the robot's. An axis against the chip's turns -32768 into 32767.
 void to_robot_frame(const uint8_t* bytes, int16_t* vector) {
+  if (kLieAlongRobot) {
+    memcpy(vector, bytes, 3 * sizeof(*vector));
+    return;
+  }
   for (uint8_t i = 0; i < 3; ++i) {
     const ChipAxis axis = kImuAxes[i];
     const int16_t value = word_at(bytes + 2 * axis.index);
