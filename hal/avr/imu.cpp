@@ -89,15 +89,17 @@ struct Burst {
   uint8_t address;
   uint8_t reg;
   uint8_t size;
+  uint8_t tag;  ///< its FreshBit; in the upper half the ChipBit that fails when it does not come
 };
-constexpr Burst burst_of(Chip chip, uint8_t reg, uint8_t size) {
-  return {chip_address(chip), static_cast<uint8_t>(reg | kAutoIncrement), size};
+constexpr Burst burst_of(Chip chip, uint8_t reg, uint8_t size, FreshBit fresh, uint8_t fails) {
+  return {chip_address(chip), static_cast<uint8_t>(reg | kAutoIncrement), size,
+          static_cast<uint8_t>(fails << 4 | fresh)};
 }
 constexpr Burst kBursts[] PROGMEM = {
-    burst_of(kGyroChip, kStatusAndData, kVectorBytes),
-    burst_of(kAccelMagChip, kStatusAndData, kVectorBytes),
-    burst_of(kAccelMagChip, kMagStatusAndData, kVectorBytes),
-    burst_of(kBaroChip, kStatusAndData, kBaroBytes),
+    burst_of(kGyroChip, kStatusAndData, kVectorBytes, kFreshGyro, kGyroChip),
+    burst_of(kAccelMagChip, kStatusAndData, kVectorBytes, kFreshAccel, kAccelMagChip),
+    burst_of(kAccelMagChip, kMagStatusAndData, kVectorBytes, kFreshMag, 0),
+    burst_of(kBaroChip, kStatusAndData, kBaroBytes, kFreshBaro, kBaroChip),
 };
 constexpr uint8_t kBurstCount = sizeof(kBursts) / sizeof(kBursts[0]);
 static_assert(kBurstCount == kReadBaro + 1, "a row each");
@@ -146,6 +148,7 @@ void set_transfer() {
     twi_transfer.address = chip_address(state.checked.chip);
     twi_transfer.reg = state.checked.reg;
     twi_transfer.size = 1;
+    twi_transfer.tag = 0;
     twi_transfer.data = &state.register_value;
   }
   twi_transfer.write = state.step == kRewriteSetting;
@@ -188,23 +191,6 @@ bool next_step(bool ok) {
   }
   state.setting = static_cast<uint8_t>(state.setting + 1 == kSettingCount ? 0 : state.setting + 1);
   return false;
-}
-
-/// FreshBit of the burst that a step reads; 0 for the others.
-uint8_t fresh_bit(Step step) {
-  return step <= kReadBaro ? static_cast<uint8_t>(1U << step) : static_cast<uint8_t>(0);
-}
-static_assert(kFreshGyro == 1 << kReadGyro && kFreshAccel == 1 << kReadAccel &&
-                  kFreshMag == 1 << kReadMag && kFreshBaro == 1 << kReadBaro,
-              "fresh_bit relies on the order");
-
-/// Remembers whether the chip that was to be read answered.
-void record_result(bool ok) {
-  const uint8_t bit = state.step == kReadGyro    ? ChipBit::kGyroChip
-                      : state.step == kReadAccel ? ChipBit::kAccelMagChip
-                      : state.step == kReadBaro  ? ChipBit::kBaroChip
-                                                 : 0;
-  state.failing = static_cast<uint8_t>(ok ? state.failing & ~bit : state.failing | bit);
 }
 
 int16_t word_at(const uint8_t* bytes) {
@@ -268,12 +254,14 @@ void take_baro(SensorSample& sample) {
 }  // namespace
 
 bool twi_done(bool ok) {
+  const auto chip = static_cast<uint8_t>(twi_transfer.tag >> 4);
   if (ok) {
-    state.arrived = static_cast<uint8_t>(state.arrived | fresh_bit(state.step));
+    state.arrived = static_cast<uint8_t>(state.arrived | twi_transfer.tag);
+    state.failing = static_cast<uint8_t>(state.failing & ~chip);
   } else {
     state.errors = static_cast<uint8_t>(state.errors + 1);
+    state.failing = static_cast<uint8_t>(state.failing | chip);
   }
-  record_result(ok);
   if (!next_step(ok)) {
     state.phase = kIdle;
     return false;

@@ -11,6 +11,7 @@ struct TwiTransfer {
   uint8_t address;  ///< 7 bits
   uint8_t reg;      ///< first register; the devices' auto-increment bit is the caller's
   uint8_t size;     ///< bytes, at least 1
+  uint8_t tag;      ///< the user's
   bool write;
   uint8_t* data;  ///< must stay until the transfer has ended
 };
