@@ -243,10 +243,7 @@ void take_baro(SensorSample& sample) {
       (state.unconfigured & kBaroChip) != 0) {
     return;
   }
-  const uint8_t sign = (burst[3] & 0x80U) != 0 ? 0xFF : 0x00;
-  sample.pressure = static_cast<int32_t>(burst[1] | (static_cast<uint32_t>(burst[2]) << 8) |
-                                         (static_cast<uint32_t>(burst[3]) << 16) |
-                                         (static_cast<uint32_t>(sign) << 24));
+  sample.pressure = static_cast<int32_t>(word_at(burst + 2)) * 256 | burst[1];
   sample.temperature = word_at(burst + 4);
   sample.fresh = static_cast<uint8_t>(sample.fresh | kFreshBaro);
 }
