@@ -19,14 +19,18 @@ struct State {
 };
 State state;
 
-void take(uint16_t conversion) {
-  state.sum = static_cast<uint16_t>(state.sum - state.window[state.at] + conversion);
-  state.window[state.at] = conversion;
-  state.at = static_cast<uint8_t>((state.at + 1U) % kWindow);
+void start_conversion() {
+  ADCSRA |= _BV(ADSC);
 }
 
-__attribute__((noinline)) void start_conversion() {
-  ADCSRA |= _BV(ADSC);
+/// Takes the result of a conversion that has ended, and starts the next one.
+__attribute__((noinline)) void take() {
+  const uint16_t conversion = ADC;
+  uint16_t& oldest = state.window[state.at];
+  state.sum = static_cast<uint16_t>(state.sum - oldest + conversion);
+  oldest = conversion;
+  state.at = static_cast<uint8_t>((state.at + 1U) % kWindow);
+  start_conversion();
 }
 
 bool converting() {
@@ -41,20 +45,16 @@ void battery_init() {
   ADCSRB = 0;
   DIDR0 = static_cast<uint8_t>(1U << kBatteryChannel);
   ADCSRA = _BV(ADEN) | _BV(ADPS2) | _BV(ADPS1) | _BV(ADPS0);  // 125 kHz
+  start_conversion();
   for (uint8_t i = 0; i < kWindow; ++i) {
-    start_conversion();
     while (converting()) {
     }
-    take(ADC);
+    take();
   }
-  start_conversion();
 }
 
 uint16_t battery_read() {
-  if (!converting()) {
-    take(ADC);
-    start_conversion();
-  }
+  if (!converting()) take();
   return state.sum;
 }
 
