@@ -27,6 +27,13 @@ inline void count_edge() {
   if (++state.edges == kMaxEncoderEdges) disable_encoder_interrupts();
 }
 
+/// Goes on from the levels of this moment.
+__attribute__((noinline)) void listen() {
+  state.left.start(read_left_encoder());
+  state.right.start(read_right_encoder());
+  enable_encoder_interrupts();
+}
+
 }  // namespace
 
 #ifdef SCREED_RIGHT_ENCODER_ON_INT6
@@ -50,9 +57,7 @@ ISR(PCINT0_vect) {
 
 void encoders_init() {
   make_encoder_pins_inputs();
-  state.left.start(read_left_encoder());
-  state.right.start(read_right_encoder());
-  enable_encoder_interrupts();
+  listen();
 }
 
 EncoderCounts encoders_read() {
@@ -63,9 +68,7 @@ EncoderCounts encoders_read() {
     counts.right = state.right.count;
     if (state.edges >= kMaxEncoderEdges) {
       ++state.left.errors;
-      state.left.start(read_left_encoder());
-      state.right.start(read_right_encoder());
-      enable_encoder_interrupts();
+      listen();
     }
     state.edges = 0;
     counts.errors = static_cast<uint8_t>(state.left.errors + state.right.errors);
