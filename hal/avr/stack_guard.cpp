@@ -15,10 +15,10 @@ constexpr uint8_t kCanaryBytes = 4;
 constexpr uint8_t kBytesPerStep = 8;
 
 struct State {
-  const uint8_t* at;
+  uint16_t at;  // bytes behind the variables that are known to be painted
   uint16_t free;
 };
-State state = {&__heap_start, 0};
+State state;
 
 }  // namespace
 
@@ -51,9 +51,9 @@ bool stack_intact() {
 
 void stack_guard_step() {
   for (uint8_t i = 0; i < kBytesPerStep; ++i) {
-    if (*state.at != kPaint) {
-      state.free = static_cast<uint16_t>(state.at - &__heap_start);
-      state.at = &__heap_start;
+    if ((&__heap_start)[state.at] != kPaint) {
+      state.free = state.at;
+      state.at = 0;
       return;
     }
     ++state.at;
