@@ -51,7 +51,7 @@ static_assert(Parameters::k_mag_offset_z == Parameters::k_gyro_offset_x + ImuCou
 
 Robot::Robot(const BoardConstants& board, const Parameters& parameters,
              const Credentials& credentials, bool parameters_intact)
-    : board_(board),
+    : OwnBoard(board),
       parameters_(parameters),
       supervisor_(parameters_intact),
       leveling_(parameters_),
@@ -289,7 +289,7 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.lost = supervisor_.running() && leveling_.lost();
   input.speed_left_dmm_per_s = drive_.speed_left_dmm_per_s();
   input.speed_right_dmm_per_s = drive_.speed_right_dmm_per_s();
-  input.full_speed_mm_per_s = board_.full_speed_mm_per_s;
+  input.full_speed_mm_per_s = board().full_speed_mm_per_s;
   input.attitude_known = attitude_.known();
   input.slips_on_purpose = strokes();
   supervisor_.tick(parameters_, input);
@@ -346,7 +346,7 @@ void Robot::feel_walls() {
     Angle travel = state_.status.angles.heading;
     // Half a turn is the upper bit.
     if (state_.status.motion.speed_mm_per_s < 0) travel = static_cast<Angle>(travel ^ INT16_MIN);
-    if (touch_wall(board_, parameters_, travel, felt, position_)) {
+    if (touch_wall(board(), parameters_, travel, felt, position_)) {
       event(message::EventCode::kWall, travel);
       leveling_.met_wall();
     }
@@ -381,7 +381,7 @@ void Robot::write_actuators(RobotOutput& output) {
 void Robot::tick(const SensorSample& sample, RobotOutput& output) {
   // The sensor says 8184 LSB at most; a board makes less than 8 mV of each, so 16 bits hold it.
   state_.status.battery_mv =
-      quotient_u16(mul_u16(sample.battery & 0x1FFFU, board_.battery_uv_per_lsb), 1000);
+      quotient_u16(mul_u16(sample.battery & 0x1FFFU, board().battery_uv_per_lsb), 1000);
   if (!state_.started) begin_first_tick(sample);
   const Deltas deltas = count_deltas(sample);
 

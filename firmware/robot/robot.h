@@ -9,8 +9,7 @@
 #include "firmware/estimation/position_estimate.h"
 #include "firmware/estimation/slip_watch.h"
 #include "firmware/leveling/leveling.h"
-#include "firmware/parameters/board_constants.h"
-#include "firmware/parameters/kept.h"
+#include "firmware/parameters/own_board.h"
 #include "firmware/parameters/parameters.h"
 #include "firmware/robot/supervisor.h"
 #include "firmware/robot/telemetry.h"
@@ -48,7 +47,7 @@ struct UplinkCounts {
 // nothing and does no floating point, so a recorded run replays to the bit, a test needs no fake,
 // and many robots fit in one process.
 
-class Robot {
+class Robot : private OwnBoard {
  public:
   /// `parameters_intact` = false: the parameters stand in for lost ones; the robot refuses to be
   /// armed.
@@ -134,7 +133,6 @@ class Robot {
   void write_actuators(RobotOutput& output);
 
   State state_{};
-  Kept<BoardConstants> board_;
   Parameters parameters_;
   AttitudeEstimator attitude_;
   Supervisor supervisor_;
