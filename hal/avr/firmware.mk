@@ -84,6 +84,9 @@ AVR_INCLUDES := -I. -Iboards/$(BOARD) -I$(FIRMWARE_BUILD)/generated -I$(BUILD_RO
 # Start-up code of our own (hal/avr/startup.S), vectors up to that of the TWI.
 LAST_VECTOR := 36
 AVR_LINK := -Wl,--gc-sections -nostartfiles
+# The image without the core has no variable with a first value other than zero: it needs no loop that copies such. The
+# linker refuses one.
+AVR_LINK_own := -Wl,--defsym=__do_copy_data=0
 # The order of the functions in the image: near what they call. The linker's own script with the list of their sections
 # before the others; a function that is not on it comes behind them. `make function-order` makes it anew.
 FUNCTION_ORDER := hal/avr/function_order.txt
@@ -147,7 +150,7 @@ $(B)/avr_stack: $(B)/tools/avr/stack/main.o $(B)/libavr_tools.a $(COMMAND_LINE) 
 
 # Changes only when compiler or flags do, and then everything is built anew.
 define AVR_FLAGS_TEXT
-$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) $(AVR_LINK) $(ARDUINO_FLAGS) $(LAST_VECTOR)
+$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) $(AVR_LINK) $(AVR_LINK_$(USB)) $(ARDUINO_FLAGS) $(LAST_VECTOR)
 endef
 $(FIRMWARE_BUILD)/avr.flags: FORCE
 	$(shell mkdir -p $(@D))$(file > $@.new,$(AVR_FLAGS_TEXT))
@@ -181,8 +184,8 @@ $(FIRMWARE_BUILD)/arduino/%.c.o: $(ARDUINO_CORE)/%.c $(FIRMWARE_BUILD)/avr.flags
 
 $(FIRMWARE_ELF): $(FIRMWARE_OBJECTS) $(ARDUINO_OBJECTS_$(USB)) $(LINKER_SCRIPT)
 	@echo "  LINK $@"
-	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) -Wl,-T,$(LINKER_SCRIPT) -Wl,-Map,$(@:.elf=.map) $(filter %.o,$^) \
-	  -o $@
+	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) $(AVR_LINK_$(USB)) -Wl,-T,$(LINKER_SCRIPT) \
+	  -Wl,-Map,$(@:.elf=.map) $(filter %.o,$^) -o $@
 
 $(LINKER_SCRIPT): $(FUNCTION_ORDER) $(FIRMWARE_BUILD)/avr.flags
 	@$(AVR_LD) -m $(AVR_EMULATION) --verbose | awk -v list=$< ' \
@@ -193,6 +196,8 @@ $(LINKER_SCRIPT): $(FUNCTION_ORDER) $(FIRMWARE_BUILD)/avr.flags
 	@for number in $$(seq $$(($(LAST_VECTOR) + 1)) 63) ; do \
 	   echo "ASSERT(!DEFINED(__vector_$$number), \"an interrupt handler beyond LAST_VECTOR of hal/avr/firmware.mk\")" ; \
 	   done >> $@
+	@[ $(USB) = core ] || \
+	  echo 'ASSERT(SIZEOF(.data) == 0, "a variable with a first value, which nothing copies: AVR_LINK_own")' >> $@
 
 function-order:  ## search the order of the image's functions with the fewest long calls
 function-order: $(FIRMWARE_ELF) $(FIRMWARE_BUILD)/screed.lst $(B)/avr_order
