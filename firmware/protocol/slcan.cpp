@@ -52,9 +52,9 @@ bool slcan_byte(const uint8_t* digits, uint8_t& byte) {
 
 SCREED_OUT_OF_LINE bool SlcanParser::feed(uint8_t byte, CanFrame& frame) {
   if (byte == '\r') return end_line(frame);
-  if (state_.length == kSlcanLineMax - 1) {
-    if (!state_.too_long) ++state_.rejected;
-    state_.too_long = true;
+  if (state_.length >= kSlcanLineMax - 1) {
+    if (state_.length != kSlcanLineMax) ++state_.rejected;
+    state_.length = kSlcanLineMax;
     return false;
   }
   if (state_.length == 0) {
@@ -63,29 +63,26 @@ SCREED_OUT_OF_LINE bool SlcanParser::feed(uint8_t byte, CanFrame& frame) {
   } else {
     const uint8_t digit = hex_value(byte);
     if (digit == kNotHex) state_.all_hex = false;
-    if (state_.length < kHeaderLength) {
-      state_.header = static_cast<uint16_t>(state_.header << 4 | digit);
-    } else {
-      uint8_t& data = state_.data[static_cast<uint8_t>(state_.length - kHeaderLength) / 2U];
-      data = static_cast<uint8_t>(data << 4 | digit);
-    }
+    uint8_t& digits = state_.digits[static_cast<uint8_t>(state_.length - 1) / 2U];
+    digits = static_cast<uint8_t>(static_cast<uint8_t>(digits << 4) | digit);
   }
   ++state_.length;
   return false;
 }
 
 bool SlcanParser::end_line(CanFrame& frame) {
-  const auto size = static_cast<uint8_t>(state_.header & 0xFU);
-  const bool good = !state_.too_long && state_.all_hex && (state_.header & 0x8000U) == 0 &&
-                    size <= sizeof(state_.data) && state_.length == kHeaderLength + 2 * size;
-  const bool is_frame = state_.length > 0 && state_.frame_like;
-  if (is_frame && !state_.too_long && !good) ++state_.rejected;
+  const uint8_t length = state_.length;
   state_.length = 0;
-  state_.too_long = false;
-  if (!is_frame || !good) return false;
-  frame.id = static_cast<uint16_t>(state_.header >> 4);
+  if (length == 0 || length == kSlcanLineMax || !state_.frame_like) return false;
+  const auto size = static_cast<uint8_t>(state_.digits[1] & 0xFU);
+  if (!state_.all_hex || (state_.digits[0] & 0x80U) != 0 || size > sizeof(frame.data) ||
+      length != kHeaderLength + 2 * size) {
+    ++state_.rejected;
+    return false;
+  }
+  frame.id = static_cast<uint16_t>(state_.digits[0] << 4 | state_.digits[1] >> 4);
   frame.size = size;
-  memcpy(frame.data, state_.data, size);
+  memcpy(frame.data, state_.digits + 2, size);
   return true;
 }
 

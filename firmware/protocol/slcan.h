@@ -42,12 +42,10 @@ class SlcanParser {
  private:
   /// What the parser remembers, zero at the start.
   struct State {
-    uint16_t header;  ///< the first four digits: id and size
-    uint8_t data[8];
-    uint8_t length;  ///< of the line so far
+    uint8_t digits[kSlcanLineMax / 2 - 1];  ///< of id, size and data, two a byte
+    uint8_t length;                         ///< of the line so far; kSlcanLineMax: too long
     bool frame_like;
     bool all_hex;
-    bool too_long;
     uint8_t rejected;
   };
 
