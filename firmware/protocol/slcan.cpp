@@ -76,7 +76,7 @@ bool SlcanParser::end_line(CanFrame& frame) {
   if (length == 0 || length == kSlcanLineMax || !state_.frame_like) return false;
   const auto size = static_cast<uint8_t>(state_.digits[1] & 0xFU);
   if (!state_.all_hex || (state_.digits[0] & 0x80U) != 0 || size > sizeof(frame.data) ||
-      length != kHeaderLength + 2 * size) {
+      length != static_cast<uint8_t>(kHeaderLength + 2 * size)) {
     ++state_.rejected;
     return false;
   }
