@@ -23,9 +23,7 @@ void put_drive_argument(uint8_t* at, const DriveArgument& argument) {
 
 DriveArgument get_drive_argument(const uint8_t* at) {
   const uint16_t speed = static_cast<uint16_t>(at[0] | static_cast<uint16_t>((at[1] & 0xFU) << 8));
-  const uint16_t turn = static_cast<uint16_t>(
-      (at[1] >> 4) | static_cast<uint16_t>(static_cast<uint16_t>(at[2]) << 4));
-  return {from_12_bits(speed), from_12_bits(turn)};
+  return {from_12_bits(speed), asr_i16(get_s16(at + 1), 4)};
 }
 
 }  // namespace screed
