@@ -51,7 +51,7 @@ static_assert(urgent_counter(kIdCommandAck) != urgent_counter(kIdParamValue) &&
 
 void Telemetry::queue(const CanFrame& frame) {
   if (state_.queued == kQueue) return;
-  state_.queue[(state_.first_queued + state_.queued) % kQueue] = frame;
+  state_.queue[static_cast<uint8_t>(state_.first_queued + state_.queued) % kQueue] = frame;
   ++state_.queued;
 }
 
