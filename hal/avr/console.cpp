@@ -65,10 +65,9 @@ void print_text(const char* text) {
 }
 
 __attribute__((noinline)) void print_byte(uint8_t byte) {
-  uint8_t digits[2] = {};
-  slcan_put_byte(digits, byte);
-  print(digits[0]);
-  print(digits[1]);
+  if (state.out_count > kOutSize - 2) return;
+  slcan_put_byte(state.out + state.out_count, byte);
+  state.out_count = static_cast<uint8_t>(state.out_count + 2);
 }
 
 __attribute__((noinline)) void print_number(uint8_t value) {
