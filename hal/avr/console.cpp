@@ -101,12 +101,12 @@ bool key_command() {
     return true;
   }
   if (state.in_count != 1 + 2 * kKeySize) return false;
-  uint8_t key[kKeySize];
-  for (uint8_t i = 0; i < kKeySize; ++i) {
-    const uint8_t* const digits = state.in + 1 + 2 * i;
-    if (!slcan_byte(digits, key[i])) return false;
+  // The bytes take the place of digits before them.
+  const uint8_t* digits = state.in + 1;
+  for (uint8_t i = 0; i < kKeySize; ++i, digits += 2) {
+    if (!slcan_byte(digits, state.in[i])) return false;
   }
-  if (!credential_eeprom_store(key)) return false;
+  if (!credential_eeprom_store(state.in)) return false;
   print_ok();
   return true;
 }

@@ -199,7 +199,7 @@ const Credentials& credentials() {
   return credential.in_force;
 }
 
-bool credential_eeprom_store(const uint8_t (&key)[kKeySize]) {
+bool credential_eeprom_store(const uint8_t* key) {
   if (eeprom_busy()) return false;
   put_key(credential.record, key);
   eeprom_write(kCredentialRecordAddress, credential.record.bytes, kCredentialRecordSize);

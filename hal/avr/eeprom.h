@@ -51,9 +51,9 @@ void credential_eeprom_init();
 
 const Credentials& credentials();
 
-/// Begins to store a key and the robot's id behind it, which hold from the next start on. False
-/// while something else is being written.
-bool credential_eeprom_store(const uint8_t (&key)[kKeySize]);
+/// Begins to store a key and the robot's id behind it, kKeySize bytes, which hold from the next
+/// start on. False while something else is being written.
+bool credential_eeprom_store(const uint8_t* key);
 
 }  // namespace avr
 
