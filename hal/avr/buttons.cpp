@@ -20,7 +20,7 @@ struct SharedPin {
     Pin::set();  // pull-up
   }
   ~SharedPin() {
-    Pin::write(led);
+    if (!led) Pin::clear();
     Pin::make_output();
   }
   SharedPin(const SharedPin&) = delete;
