@@ -66,8 +66,7 @@ struct LineCoding {
 constexpr uint8_t kLineCodingSize = 7;
 static_assert(sizeof(LineCoding) == kLineCodingSize, "as it travels");
 
-// UECFG1X: size, one bank.
-constexpr uint8_t k16Bytes = _BV(EPSIZE0) | _BV(ALLOC);
+// UECFG1X: room for 64 bytes, one bank. The notification endpoint could do with less.
 constexpr uint8_t k64Bytes = _BV(EPSIZE1) | _BV(EPSIZE0) | _BV(ALLOC);
 
 /// What is still to be done of a control transfer.
@@ -140,12 +139,12 @@ bool send_descriptor() {
   }
 }
 
-/// config0, config1: UECFG0X and UECFG1X.
-__attribute__((noinline)) void start_endpoint(uint8_t endpoint, uint8_t config0, uint8_t config1) {
+/// type: UECFG0X.
+__attribute__((noinline)) void start_endpoint(uint8_t endpoint, uint8_t type) {
   UENUM = endpoint;
   UECONX = _BV(EPEN);
-  UECFG0X = config0;
-  UECFG1X = config1;
+  UECFG0X = type;
+  UECFG1X = k64Bytes;
 }
 
 bool configure() {
@@ -157,9 +156,9 @@ bool configure() {
   }
   UENUM = kControl;
   if (state.configuration == 0) return acknowledge();
-  start_endpoint(kNotification, _BV(EPTYPE1) | _BV(EPTYPE0) | _BV(EPDIR), k16Bytes);
-  start_endpoint(kFromHost, _BV(EPTYPE1), k64Bytes);
-  start_endpoint(kToHost, _BV(EPTYPE1) | _BV(EPDIR), k64Bytes);
+  start_endpoint(kNotification, _BV(EPTYPE1) | _BV(EPTYPE0) | _BV(EPDIR));
+  start_endpoint(kFromHost, _BV(EPTYPE1));
+  start_endpoint(kToHost, _BV(EPTYPE1) | _BV(EPDIR));
   UENUM = kControl;
   return acknowledge();
 }
@@ -249,7 +248,7 @@ void take_data() {
 
 void attach() {
   USBCON = _BV(USBE) | _BV(OTGPADE);
-  start_endpoint(kControl, 0, k64Bytes);
+  start_endpoint(kControl, 0);
   UDCON = 0;  // full speed, with its pull-up
 }
 
