@@ -41,20 +41,25 @@ constexpr uint8_t high(uint16_t value) {
   return static_cast<uint8_t>(value >> 8);
 }
 
-/// A string descriptor; the zero behind the characters is not sent, the header is as long.
+/// A string descriptor, without the zero behind the characters.
 template <uint8_t kCharacters>
 struct Text {
   uint8_t size;
   uint8_t type;
   char16_t characters[kCharacters];
 };
+template <uint8_t kSize>
+constexpr Text<kSize - 1> text_of(const char16_t (&literal)[kSize]) {
+  Text<kSize - 1> text = {sizeof(text), kStringDescriptor, {}};
+  for (uint8_t i = 0; i < kSize - 1; ++i) text.characters[i] = literal[i];
+  return text;
+}
 
 /// What GET_DESCRIPTOR finds in front of a descriptor.
 struct Label {
   uint8_t type;
   uint8_t index;
-  uint8_t sent;    ///< bytes; 0: the end of all
-  uint8_t stored;  ///< bytes
+  uint8_t size;  ///< bytes; 0: the end of all
 };
 
 /// All descriptors, one behind the other, each behind its label.
@@ -67,12 +72,12 @@ const struct Descriptors {
   Label languages_label;
   uint8_t languages[4];
   Label manufacturer_label;
-  Text<sizeof(u"" SCREED_USB_MANUFACTURER) / 2> manufacturer;
+  decltype(text_of(u"" SCREED_USB_MANUFACTURER)) manufacturer;
   Label product_label;
-  Text<sizeof(u"" SCREED_USB_PRODUCT) / 2> product;
+  decltype(text_of(u"" SCREED_USB_PRODUCT)) product;
   Label end;
 } kDescriptors PROGMEM = {
-  {kDeviceDescriptor, 0, sizeof(kDescriptors.device), sizeof(kDescriptors.device)},
+  {kDeviceDescriptor, 0, sizeof(kDescriptors.device)},
   {
     sizeof(kDescriptors.device), kDeviceDescriptor,
     0x00, 0x02,        // USB 2.0
@@ -83,7 +88,7 @@ const struct Descriptors {
     kManufacturerIndex, kProductIndex, 0,  // no serial number
     1,                 // configuration
   },
-  {kConfigurationDescriptor, 0, sizeof(kDescriptors.configuration), sizeof(kDescriptors.configuration)},
+  {kConfigurationDescriptor, 0, sizeof(kDescriptors.configuration)},
   {
     9, kConfigurationDescriptor, sizeof(kDescriptors.configuration), 0,
     2, 1, 0,           // interfaces, number, no name
@@ -99,19 +104,18 @@ const struct Descriptors {
     7, 5, kFromHost, 0x02, kPacketSize, 0, 0,
     7, 5, kIn | kToHost, 0x02, kPacketSize, 0, 0,
   },
-  {kStringDescriptor, 0, sizeof(kDescriptors.languages), sizeof(kDescriptors.languages)},
+  {kStringDescriptor, 0, sizeof(kDescriptors.languages)},
   {sizeof(kDescriptors.languages), kStringDescriptor, 0x09, 0x04},  // English
-  {kStringDescriptor, kManufacturerIndex, sizeof(u"" SCREED_USB_MANUFACTURER),
-   sizeof(kDescriptors.manufacturer)},
-  {sizeof(u"" SCREED_USB_MANUFACTURER), kStringDescriptor, u"" SCREED_USB_MANUFACTURER},
-  {kStringDescriptor, kProductIndex, sizeof(u"" SCREED_USB_PRODUCT), sizeof(kDescriptors.product)},
-  {sizeof(u"" SCREED_USB_PRODUCT), kStringDescriptor, u"" SCREED_USB_PRODUCT},
-  {0, 0, 0, 0},
+  {kStringDescriptor, kManufacturerIndex, sizeof(kDescriptors.manufacturer)},
+  text_of(u"" SCREED_USB_MANUFACTURER),
+  {kStringDescriptor, kProductIndex, sizeof(kDescriptors.product)},
+  text_of(u"" SCREED_USB_PRODUCT),
+  {0, 0, 0},
 };
 // clang-format on
 static_assert(sizeof(kDescriptors.configuration) % kPacketSize != 0 &&
-                  sizeof(u"" SCREED_USB_MANUFACTURER) % kPacketSize != 0 &&
-                  sizeof(u"" SCREED_USB_PRODUCT) % kPacketSize != 0,
+                  sizeof(kDescriptors.manufacturer) % kPacketSize != 0 &&
+                  sizeof(kDescriptors.product) % kPacketSize != 0,
               "an answer of whole packets would need an empty one behind it");
 
 }  // namespace usb

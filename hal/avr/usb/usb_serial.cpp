@@ -127,15 +127,14 @@ bool send_descriptor() {
   for (;;) {
     const uint8_t type = pgm_read_byte(at++);
     const uint8_t index = pgm_read_byte(at++);
-    const uint8_t sent = pgm_read_byte(at++);
-    const uint8_t stored = pgm_read_byte(at++);
-    if (sent == 0) return false;
+    const uint8_t size = pgm_read_byte(at++);
+    if (size == 0) return false;
     if (type == state.setup.value_high && index == state.setup.value) {
-      answer(at, sent);
+      answer(at, size);
       state.answer_in_flash = true;
       return true;
     }
-    at += stored;
+    at += size;
   }
 }
 
