@@ -57,8 +57,8 @@ constexpr Text<kSize - 1> text_of(const char16_t (&literal)[kSize]) {
 
 /// What GET_DESCRIPTOR finds in front of a descriptor.
 struct Label {
+  uint8_t index;  ///< index and type are the request's wValue
   uint8_t type;
-  uint8_t index;
   uint8_t size;  ///< bytes; 0: the end of all
 };
 
@@ -77,7 +77,7 @@ const struct Descriptors {
   decltype(text_of(u"" SCREED_USB_PRODUCT)) product;
   Label end;
 } kDescriptors PROGMEM = {
-  {kDeviceDescriptor, 0, sizeof(kDescriptors.device)},
+  {0, kDeviceDescriptor, sizeof(kDescriptors.device)},
   {
     sizeof(kDescriptors.device), kDeviceDescriptor,
     0x00, 0x02,        // USB 2.0
@@ -88,7 +88,7 @@ const struct Descriptors {
     kManufacturerIndex, kProductIndex, 0,  // no serial number
     1,                 // configuration
   },
-  {kConfigurationDescriptor, 0, sizeof(kDescriptors.configuration)},
+  {0, kConfigurationDescriptor, sizeof(kDescriptors.configuration)},
   {
     9, kConfigurationDescriptor, sizeof(kDescriptors.configuration), 0,
     2, 1, 0,           // interfaces, number, no name
@@ -104,11 +104,11 @@ const struct Descriptors {
     7, 5, kFromHost, 0x02, kPacketSize, 0, 0,
     7, 5, kIn | kToHost, 0x02, kPacketSize, 0, 0,
   },
-  {kStringDescriptor, 0, sizeof(kDescriptors.languages)},
+  {0, kStringDescriptor, sizeof(kDescriptors.languages)},
   {sizeof(kDescriptors.languages), kStringDescriptor, 0x09, 0x04},  // English
-  {kStringDescriptor, kManufacturerIndex, sizeof(kDescriptors.manufacturer)},
+  {kManufacturerIndex, kStringDescriptor, sizeof(kDescriptors.manufacturer)},
   text_of(u"" SCREED_USB_MANUFACTURER),
-  {kStringDescriptor, kProductIndex, sizeof(kDescriptors.product)},
+  {kProductIndex, kStringDescriptor, sizeof(kDescriptors.product)},
   text_of(u"" SCREED_USB_PRODUCT),
   {0, 0, 0},
 };

@@ -51,8 +51,7 @@ enum Request : uint8_t {
 struct Setup {
   uint8_t type;
   uint8_t request;
-  uint8_t value;
-  uint8_t value_high;
+  uint16_t value;
   uint16_t index;
   uint16_t length;
 };
@@ -125,11 +124,11 @@ void send_packet() {
 bool send_descriptor() {
   const auto* at = reinterpret_cast<const uint8_t*>(&kDescriptors);
   for (;;) {
-    const uint8_t type = pgm_read_byte(at++);
-    const uint8_t index = pgm_read_byte(at++);
-    const uint8_t size = pgm_read_byte(at++);
+    const uint16_t value = pgm_read_word(at);
+    const uint8_t size = pgm_read_byte(at + 2);
+    at += sizeof(Label);
     if (size == 0) return false;
-    if (type == state.setup.value_high && index == state.setup.value) {
+    if (value == state.setup.value) {
       answer(at, size);
       state.answer_in_flash = true;
       return true;
@@ -147,14 +146,15 @@ __attribute__((noinline)) void start_endpoint(uint8_t endpoint, uint8_t type) {
 }
 
 bool configure() {
-  if (state.setup.value > 1) return false;
-  state.configuration = state.setup.value;
+  const auto configuration = static_cast<uint8_t>(state.setup.value);
+  if (configuration > 1) return false;
+  state.configuration = configuration;
   for (uint8_t endpoint = kEndpoints; --endpoint > kControl;) {
     UENUM = endpoint;
     UECONX = 0;
   }
   UENUM = kControl;
-  if (state.configuration == 0) return acknowledge();
+  if (configuration == 0) return acknowledge();
   start_endpoint(kNotification, _BV(EPTYPE1) | _BV(EPTYPE0) | _BV(EPDIR));
   start_endpoint(kFromHost, _BV(EPTYPE1));
   start_endpoint(kToHost, _BV(EPTYPE1) | _BV(EPDIR));
@@ -204,7 +204,7 @@ bool execute() {
     case kSetFeature:
       return to_endpoint && acknowledge();
     case kSetAddress:
-      UDADDR = state.setup.value;
+      UDADDR = static_cast<uint8_t>(state.setup.value);
       // Nothing comes between: simavr forgets an interrupt whose cause was there before its mask.
       cli();
       acknowledge();
