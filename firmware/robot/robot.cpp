@@ -190,8 +190,16 @@ uint16_t Robot::detail_of(RequestResult result) const {
   }
 }
 
+// EVENT and PARAM_VALUE are two numbers of the same sizes: their code is in the image once.
+SCREED_OUT_OF_LINE void Robot::queue_numbers(uint16_t id, uint16_t what, int32_t value) {
+  static_assert(uint8_t{message::ParamValue::kSize} == uint8_t{message::Event::kSize}, "alike");
+  CanFrame frame = frame_of(message::Event{what, value});
+  frame.id = id;
+  telemetry_.queue(frame);
+}
+
 void Robot::event(message::EventCode code, int32_t argument) {
-  telemetry_.queue(frame_of(message::Event{static_cast<uint16_t>(code), argument}));
+  queue_numbers(kIdEvent, static_cast<uint16_t>(code), argument);
 }
 
 RequestResult Robot::execute(const uint8_t* data) {
@@ -237,7 +245,7 @@ void Robot::fix_position(const DriveArgument& place_cm) {
 
 RequestResult Robot::send_parameter(uint16_t index) {
   if (index >= Parameters::kCount) return RequestResult::kBadArgument;
-  telemetry_.queue(frame_of(message::ParamValue{index, parameters_.values[index]}));
+  queue_numbers(kIdParamValue, index, parameters_.values[index]);
   return RequestResult::kDone;
 }
 

@@ -116,6 +116,7 @@ class Robot : private OwnBoard {
   RequestResult send_parameter(uint16_t index);
   RequestResult commit_parameter(uint8_t index, uint16_t crc);
   uint16_t detail_of(RequestResult result) const;
+  void queue_numbers(uint16_t id, uint16_t what, int32_t value);
   void event(message::EventCode code, int32_t argument);
   void supervise(const SensorSample& sample, const Deltas& deltas);
   void select_motion();
