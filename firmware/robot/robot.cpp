@@ -159,15 +159,16 @@ void Robot::process_command() {
   state_.command_pending = false;
   const GateResult checked = gate_.check(telemetry_.exchange(kIdCommand), state_.command);
   if (checked == GateResult::kRepeated) {
-    telemetry_.queue(frame_of(state_.answer));
+    telemetry_.queue(state_.answer);
     return;
   }
   const bool accepted = checked == GateResult::kAccepted;
   const RequestResult result =
       accepted ? execute(state_.command) : static_cast<RequestResult>(checked);
-  const message::CommandAck answer = {state_.command[0], state_.command[kCommandFreshnessOffset],
-                                      static_cast<uint8_t>(result), detail_of(result)};
-  telemetry_.queue(frame_of(answer));
+  const CanFrame answer =
+      frame_of(message::CommandAck{state_.command[0], state_.command[kCommandFreshnessOffset],
+                                   static_cast<uint8_t>(result), detail_of(result)});
+  telemetry_.queue(answer);
   if (accepted) state_.answer = answer;
   if (checked == GateResult::kBadMac && gate_.locked_ticks() != 0) {
     event(message::EventCode::kLockedOut, gate_.locked_ticks());

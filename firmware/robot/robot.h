@@ -78,7 +78,6 @@ class Robot : private OwnBoard {
     MotionCommand drive_command;  ///< last CommandOp::kDrive
     uint16_t last_left;
     uint16_t last_right;
-    message::CommandAck answer;   ///< to the last command that was accepted
     uint8_t staged[kStagedSize];  ///< index and value of a PARAM_STAGE
     uint8_t store_parameter;      ///< as RobotOutput
     int16_t store_value;
@@ -96,6 +95,8 @@ class Robot : private OwnBoard {
     uint16_t longest_tick_us;   ///< since the last HEALTH
     uint32_t time_ms;           ///< at the last TIME; the sample's time wraps after 71.6 minutes
     uint32_t time_us;           ///< the sample's, then
+    /// To the last command that was accepted. Last, since members behind it would be out of reach.
+    CanFrame answer;
   };
 
   struct Deltas {
