@@ -19,13 +19,19 @@ using CommandOp = message::CommandOp;
 
 constexpr uint8_t kE2eHeaderSize = 2;
 
+/// Size and data of a message; its protection is written afterwards, and what is behind it is left.
+template <typename Message>
+void set(CanFrame& frame, const Message& message) {
+  frame.size = Message::kSize;
+  message.pack(frame.data);
+}
+
 /// The frame of a message, its protection still missing.
 template <typename Message>
 CanFrame frame_of(const Message& message) {
   CanFrame frame{};
   frame.id = Message::kId;
-  frame.size = Message::kSize;
-  message.pack(frame.data);
+  set(frame, message);
   return frame;
 }
 

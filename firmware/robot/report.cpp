@@ -17,13 +17,6 @@ SCREED_OUT_OF_LINE int16_t heading_cdeg(Angle heading) {
                               16);
 }
 
-// Fills size and data; the protection is written afterwards.
-template <typename Message>
-void set(CanFrame& frame, const Message& message) {
-  frame.size = Message::kSize;
-  message.pack(frame.data);
-}
-
 // Six messages are three numbers of 16 bits each: their code is in the image once.
 SCREED_OUT_OF_LINE void set_words(CanFrame& frame, int16_t first, int16_t second, int16_t third) {
   set(frame, message::AccelRaw{first, second, third});

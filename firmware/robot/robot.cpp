@@ -165,9 +165,10 @@ void Robot::process_command() {
   const bool accepted = checked == GateResult::kAccepted;
   const RequestResult result =
       accepted ? execute(state_.command) : static_cast<RequestResult>(checked);
-  const CanFrame answer =
-      frame_of(message::CommandAck{state_.command[0], state_.command[kCommandFreshnessOffset],
-                                   static_cast<uint8_t>(result), detail_of(result)});
+  CanFrame answer;  // what is sent of it is written below
+  answer.id = kIdCommandAck;
+  set(answer, message::CommandAck{state_.command[0], state_.command[kCommandFreshnessOffset],
+                                  static_cast<uint8_t>(result), detail_of(result)});
   telemetry_.queue(answer);
   if (accepted) state_.answer = answer;
   if (checked == GateResult::kBadMac && gate_.locked_ticks() != 0) {
@@ -194,8 +195,9 @@ uint16_t Robot::detail_of(RequestResult result) const {
 // EVENT and PARAM_VALUE are two numbers of the same sizes: their code is in the image once.
 SCREED_OUT_OF_LINE void Robot::queue_numbers(uint16_t id, uint16_t what, int32_t value) {
   static_assert(uint8_t{message::ParamValue::kSize} == uint8_t{message::Event::kSize}, "alike");
-  CanFrame frame = frame_of(message::Event{what, value});
+  CanFrame frame;  // what is sent of it is written below
   frame.id = id;
+  set(frame, message::Event{what, value});
   telemetry_.queue(frame);
 }
 
