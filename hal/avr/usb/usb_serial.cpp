@@ -205,10 +205,11 @@ bool execute() {
       return to_endpoint && acknowledge();
     case kSetAddress:
       UDADDR = static_cast<uint8_t>(state.setup.value);
-      // Nothing comes between: simavr forgets an interrupt whose cause was there before its mask.
+      // The mask first: simavr forgets an interrupt whose cause was there before it. The cause that
+      // is there now ends before an interrupt can come.
       cli();
-      acknowledge();
       UEIENX = _BV(TXINE);
+      acknowledge();
       sei();
       return true;
     case kGetDescriptor:
