@@ -49,6 +49,12 @@ static_assert(urgent_counter(kIdCommandAck) != urgent_counter(kIdParamValue) &&
 
 }  // namespace
 
+Telemetry::Telemetry(uint8_t robot_id) : OwnNode(robot_id) {
+  for (uint8_t i = 0; i < kTelemetryMessages; ++i) {
+    state_.countdown[i] = read_program_u8(&kSchedule[i].first);
+  }
+}
+
 void Telemetry::queue(const CanFrame& frame) {
   if (state_.queued == kQueue) return;
   state_.queue[static_cast<uint8_t>(state_.first_queued + state_.queued) % kQueue] = frame;
@@ -66,17 +72,11 @@ void Telemetry::send(CanFrame& frame, uint8_t message, RobotOutput& output) {
 
 bool Telemetry::room(const RobotOutput& output) const {
   return state_.credit >= kSlcanLineMax &&
-         output.radio_out_count + kSlcanLineMax <= kRadioOutCapacity;
+         output.radio_out_count <= kRadioOutCapacity - kSlcanLineMax;
 }
 
 void Telemetry::begin_tick(RobotOutput& output) {
   output.radio_out_count = 0;
-  if (!state_.started) {
-    for (uint8_t i = 0; i < kTelemetryMessages; ++i) {
-      state_.countdown[i] = read_program_u8(&kSchedule[i].first);
-    }
-    state_.started = true;
-  }
   if (!is_packet_tick()) {
     --state_.next_packet;
     return;

@@ -21,7 +21,7 @@ constexpr uint8_t kMessageClasses = 6;                     ///< of ids of such m
 class Telemetry : private OwnNode {
  public:
   /// robot_id: as Credentials has it.
-  explicit Telemetry(uint8_t robot_id) : OwnNode(robot_id) {}
+  explicit Telemetry(uint8_t robot_id);
 
   using OwnNode::exchange;
 
@@ -58,7 +58,6 @@ class Telemetry : private OwnNode {
     uint8_t countdown[kTelemetryMessages];
     bool waits[kTelemetryMessages];  ///< for room
     uint8_t counter[kTelemetryMessages + kMessageClasses];
-    bool started;
   };
 
   bool room(const RobotOutput& output) const;
