@@ -7,11 +7,21 @@
 
 namespace screed {
 
+namespace {
+
+/// All bytes are looked at, so that the time tells nothing of the right ones.
+SCREED_OUT_OF_LINE bool same(const uint8_t* a, const uint8_t* b, uint8_t size) {
+  uint8_t different = 0;
+  for (uint8_t i = 0; i < size; ++i) different = static_cast<uint8_t>(different | (a[i] ^ b[i]));
+  return different == 0;
+}
+
+}  // namespace
+
 SCREED_OUT_OF_LINE GateResult CommandGate::check(uint16_t can_id, const uint8_t* data) {
   if (!credentials_.key_set) return GateResult::kNoKey;
   if (state_.locked_ticks != 0) return GateResult::kLockedOut;
-  if (state_.counter != 0 && memcmp(data, state_.last, kCommandSize) == 0)
-    return GateResult::kRepeated;
+  if (state_.counter != 0 && same(data, state_.last, kCommandSize)) return GateResult::kRepeated;
 
   // 1 to 256 above the last one.
   const uint8_t steps = static_cast<uint8_t>(data[kCommandFreshnessOffset] -
@@ -21,12 +31,7 @@ SCREED_OUT_OF_LINE GateResult CommandGate::check(uint16_t can_id, const uint8_t*
   uint8_t mac[kSipHashSize];
   command_mac(credentials_.key, can_id, credentials_.robot_id, credentials_.boot_epoch, counter,
               data, mac);
-  // All bytes are looked at, so that the time tells nothing of the right ones.
-  uint8_t wrong = 0;
-  for (uint8_t i = 0; i < kCommandMacSize; ++i) {
-    wrong = static_cast<uint8_t>(wrong | (mac[i] ^ data[kCommandMacOffset + i]));
-  }
-  if (wrong != 0) {
+  if (!same(mac, data + kCommandMacOffset, kCommandMacSize)) {
     ++state_.refused;
     ++state_.bad_macs;
     if (state_.bad_macs == 1) state_.bad_mac_decay_ticks = kBadMacDecayTicks;
