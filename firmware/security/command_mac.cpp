@@ -26,9 +26,9 @@ SCREED_OUT_OF_LINE void exclusive_or(uint8_t* word, const uint8_t* other) {
   for (uint8_t i = 0; i < kWord; ++i) word[i] = static_cast<uint8_t>(word[i] ^ other[i]);
 }
 
-/// A quarter of a round: a += b; b = b rotated left by whole bytes, then right by bits; b ^= a.
+/// A quarter of a round: a += b; b = b rotated left by 8 + bits, bits > 0; b ^= a.
 #ifdef __AVR__
-SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits) {
+SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bits) {
   uint32_t low;
   uint32_t high;
   uint8_t i;
@@ -36,15 +36,15 @@ SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits)
   uint8_t* at = a;
   uint8_t* word = b;
   asm volatile(
-      // low, high = b
-      "ld %A[low], %a[b]\n\t"
-      "ldd %B[low], %a[b]+1\n\t"
-      "ldd %C[low], %a[b]+2\n\t"
-      "ldd %D[low], %a[b]+3\n\t"
-      "ldd %A[high], %a[b]+4\n\t"
-      "ldd %B[high], %a[b]+5\n\t"
-      "ldd %C[high], %a[b]+6\n\t"
-      "ldd %D[high], %a[b]+7\n\t"
+      // low, high = b, left by eight bits
+      "ld %B[low], %a[b]\n\t"
+      "ldd %C[low], %a[b]+1\n\t"
+      "ldd %D[low], %a[b]+2\n\t"
+      "ldd %A[high], %a[b]+3\n\t"
+      "ldd %B[high], %a[b]+4\n\t"
+      "ldd %C[high], %a[b]+5\n\t"
+      "ldd %D[high], %a[b]+6\n\t"
+      "ldd %A[low], %a[b]+7\n\t"
       // a += b, byte by byte: dec leaves the carry alone
       "ldi %[i], 8\n\t"
       "clc\n"
@@ -54,70 +54,52 @@ SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits)
       "adc __tmp_reg__, %[byte]\n\t"
       "st X+, __tmp_reg__\n\t"
       "dec %[i]\n\t"
-      "brne 5b\n\t"
-      "sbiw r26, 8\n\t"
-      "sbiw %[b], 8\n"
-      // left by bytes, at least one
+      "brne 5b\n"
+      // left by the other bits, one by one
       "1:\n\t"
-      "mov __tmp_reg__, %D[high]\n\t"
-      "mov %D[high], %C[high]\n\t"
-      "mov %C[high], %B[high]\n\t"
-      "mov %B[high], %A[high]\n\t"
-      "mov %A[high], %D[low]\n\t"
-      "mov %D[low], %C[low]\n\t"
-      "mov %C[low], %B[low]\n\t"
-      "mov %B[low], %A[low]\n\t"
-      "mov %A[low], __tmp_reg__\n\t"
-      "dec %[bytes]\n\t"
+      "lsl %A[low]\n\t"
+      "rol %B[low]\n\t"
+      "rol %C[low]\n\t"
+      "rol %D[low]\n\t"
+      "rol %A[high]\n\t"
+      "rol %B[high]\n\t"
+      "rol %C[high]\n\t"
+      "rol %D[high]\n\t"
+      "adc %A[low], __zero_reg__\n\t"
+      "dec %[bits]\n\t"
       "brne 1b\n\t"
-      // right by bits, also none
-      "rjmp 3f\n"
-      "2:\n\t"
-      "bst %A[low], 0\n\t"
-      "lsr %D[high]\n\t"
-      "ror %C[high]\n\t"
-      "ror %B[high]\n\t"
-      "ror %A[high]\n\t"
-      "ror %D[low]\n\t"
-      "ror %C[low]\n\t"
-      "ror %B[low]\n\t"
-      "ror %A[low]\n\t"
-      "bld %D[high], 7\n"
-      "3:\n\t"
-      "subi %[bits], 1\n\t"
-      "brcc 2b\n\t"
-      // b ^= a
-      "ld __tmp_reg__, X+\n\t"
-      "eor %A[low], __tmp_reg__\n\t"
-      "st %a[b], %A[low]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %B[low], __tmp_reg__\n\t"
-      "std %a[b]+1, %B[low]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %C[low], __tmp_reg__\n\t"
-      "std %a[b]+2, %C[low]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %D[low], __tmp_reg__\n\t"
-      "std %a[b]+3, %D[low]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %A[high], __tmp_reg__\n\t"
-      "std %a[b]+4, %A[high]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %B[high], __tmp_reg__\n\t"
-      "std %a[b]+5, %B[high]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %C[high], __tmp_reg__\n\t"
-      "std %a[b]+6, %C[high]\n\t"
-      "ld __tmp_reg__, X+\n\t"
+      // b ^= a, from the end
+      "ld __tmp_reg__, -X\n\t"
       "eor %D[high], __tmp_reg__\n\t"
-      "std %a[b]+7, %D[high]\n\t"
-      : [low] "=&r"(low), [high] "=&r"(high), [i] "=&d"(i), [byte] "=&r"(byte), [bytes] "+d"(bytes),
-        [bits] "+d"(bits), [a] "+x"(at), [b] "+b"(word)
+      "st -%a[b], %D[high]\n\t"
+      "ld __tmp_reg__, -X\n\t"
+      "eor %C[high], __tmp_reg__\n\t"
+      "st -%a[b], %C[high]\n\t"
+      "ld __tmp_reg__, -X\n\t"
+      "eor %B[high], __tmp_reg__\n\t"
+      "st -%a[b], %B[high]\n\t"
+      "ld __tmp_reg__, -X\n\t"
+      "eor %A[high], __tmp_reg__\n\t"
+      "st -%a[b], %A[high]\n\t"
+      "ld __tmp_reg__, -X\n\t"
+      "eor %D[low], __tmp_reg__\n\t"
+      "st -%a[b], %D[low]\n\t"
+      "ld __tmp_reg__, -X\n\t"
+      "eor %C[low], __tmp_reg__\n\t"
+      "st -%a[b], %C[low]\n\t"
+      "ld __tmp_reg__, -X\n\t"
+      "eor %B[low], __tmp_reg__\n\t"
+      "st -%a[b], %B[low]\n\t"
+      "ld __tmp_reg__, -X\n\t"
+      "eor %A[low], __tmp_reg__\n\t"
+      "st -%a[b], %A[low]\n\t"
+      : [low] "=&r"(low), [high] "=&r"(high), [i] "=&d"(i), [byte] "=&r"(byte), [bits] "+r"(bits),
+        [a] "+x"(at), [b] "+b"(word)
       :
       : "memory");
 }
 #else
-void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits) {
+void mix(uint8_t* a, uint8_t* b, uint8_t bits) {
   uint64_t sum = 0;
   uint64_t turned = 0;
   for (uint8_t i = kWord; i-- > 0;) {
@@ -125,8 +107,7 @@ void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits) {
     turned = turned << 8 | b[i];
   }
   sum += turned;
-  const uint8_t left = static_cast<uint8_t>(8U * bytes - bits);
-  turned = (turned << left | turned >> (64U - left)) ^ sum;
+  turned = (turned << (8U + bits) | turned >> (56U - bits)) ^ sum;
   for (uint8_t i = 0; i < kWord; ++i) {
     a[i] = static_cast<uint8_t>(sum >> (8U * i));
     b[i] = static_cast<uint8_t>(turned >> (8U * i));
@@ -148,11 +129,11 @@ SCREED_OUT_OF_LINE void rounds(uint8_t* v, uint8_t count) {
   uint8_t* const v2 = v + size_t{2} * kWord;
   uint8_t* const v3 = v + size_t{3} * kWord;
   for (; count > 0; --count) {
-    mix(v, v1, 2, 3);  // 13
+    mix(v, v1, 5);  // 13
     swap_halves(v);
-    mix(v2, v3, 2, 0);  // 16
-    mix(v, v3, 3, 3);   // 21
-    mix(v2, v1, 3, 7);  // 17
+    mix(v2, v3, 8);  // 16
+    mix(v, v3, 13);  // 21
+    mix(v2, v1, 9);  // 17
     swap_halves(v2);
   }
 }
