@@ -251,9 +251,10 @@ void take_baro(SensorSample& sample) {
 }  // namespace
 
 bool twi_done(bool ok) {
-  const auto chip = static_cast<uint8_t>(twi_transfer.tag >> 4);
+  const uint8_t tag = twi_transfer.tag;
+  const uint8_t chip = tag / 16U;  // a shift would be one of 16 bits
   if (ok) {
-    state.arrived = static_cast<uint8_t>(state.arrived | twi_transfer.tag);
+    state.arrived = static_cast<uint8_t>(state.arrived | tag);
     state.failing = static_cast<uint8_t>(state.failing & ~chip);
   } else {
     state.errors = static_cast<uint8_t>(state.errors + 1);
