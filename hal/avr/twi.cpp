@@ -112,6 +112,14 @@ void twi_start() {
   TWCR = kGo | _BV(TWSTA);
 }
 
+namespace {
+
+__attribute__((noinline)) void wait_half_clock() {
+  _delay_us(5);
+}
+
+}  // namespace
+
 void twi_recover() {
   TWCR = 0;
   // Open drain by hand: low is driven, high is left to the pull-ups.
@@ -119,18 +127,18 @@ void twi_recover() {
   Sda::clear();
   for (uint8_t i = 0; i < kRecoveryClocks && !Sda::is_high(); ++i) {
     Scl::make_output();
-    _delay_us(5);
+    wait_half_clock();
     Scl::make_input();
-    _delay_us(5);
+    wait_half_clock();
   }
   // Stop condition: data rises while the clock is high.
   Scl::make_output();
   Sda::make_output();
-  _delay_us(5);
+  wait_half_clock();
   Scl::make_input();
-  _delay_us(5);
+  wait_half_clock();
   Sda::make_input();
-  _delay_us(5);
+  wait_half_clock();
   twi_init();
 }
 
