@@ -81,8 +81,8 @@ Copy copy;  // what is stored, or is being written
 
 struct State {
   StoreState store;
-  bool has_good_copy;
-  uint8_t copies;  // still to write
+  uint8_t copies;       // still to write
+  uint8_t copies_next;  // that the next save writes
   uint8_t next_copy;
   uint16_t next_sequence;
   uint8_t pending;  // a parameter that waits to be stored, by its number; 0: none
@@ -106,9 +106,8 @@ __attribute__((noinline)) void take_defaults() {
 void begin_save() {
   seal_copy(state.next_sequence, copy.bytes);
   state.next_sequence = static_cast<uint16_t>(state.next_sequence + 1U);
-  // A store without a good copy gets two at once.
-  state.copies = state.has_good_copy ? 1 : kParameterCopies;
-  state.has_good_copy = true;
+  state.copies = state.copies_next;
+  state.copies_next = 1;
 }
 
 }  // namespace
@@ -123,13 +122,14 @@ void parameter_eeprom_init() {
   }
   const StoreChoice choice = choose_copy(states[0], sequences[0], states[1], sequences[1]);
   state.store = choice.state;
-  state.has_good_copy = choice.state == StoreState::kStored;
   state.next_copy = choice.next_copy;
   state.next_sequence = choice.next_sequence;
   if (choice.state == StoreState::kStored) {
     read_copy(choice.copy);
+    state.copies_next = 1;
   } else {
     take_defaults();
+    state.copies_next = kParameterCopies;  // a store without a good copy gets two at once
   }
   in_force.value = copy.parts.values;
 }
