@@ -155,7 +155,7 @@ void parameter_store(uint8_t number, int16_t value) {
 }
 
 bool parameter_saving() {
-  return state.copies != 0 || state.pending != 0 || eeprom_busy();
+  return (state.copies | state.pending | writing.left) != 0;
 }
 
 __attribute__((noinline)) void parameter_eeprom_step() {
