@@ -41,33 +41,33 @@ DriveControl::DriveControl(const BoardConstants& board, const Parameters& parame
       right_(left_) {}
 
 void DriveControl::idle(const DriveMeasurement& measured) {
-  targets_ = {0, 0};
+  state_.targets = {0, 0};
   forget_yaw();
   left_.release(measured.counts_left);
   right_.release(measured.counts_right);
 }
 
 SCREED_OUT_OF_LINE void DriveControl::forget_yaw() {
-  yaw_error_ = 0;
-  yaw_integral_q8_ = 0;
+  state_.yaw_error = 0;
+  state_.yaw_integral_q8 = 0;
 }
 
 SCREED_OUT_OF_LINE int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command,
                                                             int32_t measured_rate) {
   const int16_t seen =
       limit_i16(static_cast<int32_t>(command.yaw_rate) - measured_rate, kYawErrorLimit);
-  yaw_error_ = static_cast<int16_t>(
-      yaw_error_ +
-      asr_i16(static_cast<int16_t>(seen - yaw_error_ + (1 << (kYawLag - 1))), kYawLag));
-  const int16_t error = yaw_error_;
+  state_.yaw_error = static_cast<int16_t>(
+      state_.yaw_error +
+      asr_i16(static_cast<int16_t>(seen - state_.yaw_error + (1 << (kYawLag - 1))), kYawLag));
+  const int16_t error = state_.yaw_error;
   // The integral is the heading lost, so it is not held while the tracks are at their limits: what
   // they owe they make up for once they can, as far as kYawCorrectionLimit lets it grow (30 degrees
   // with the default gain). ki/256 per s: ki e / 256 / 100 a tick, Q8: ki e / 100 = ki e 41 / 4096,
   // shifted in two parts to fit 32 bits.
   const int32_t step = asr(asr(mul_i16(parameters_.yaw_ki(), error), 4) * 41, 8);
-  yaw_integral_q8_ = limit_i32(yaw_integral_q8_ + step, kYawIntegralLimit_q8);
+  state_.yaw_integral_q8 = limit_i32(state_.yaw_integral_q8 + step, kYawIntegralLimit_q8);
   const int32_t correction =
-      asr(mul_i16(parameters_.yaw_kp(), error), 8) + asr(yaw_integral_q8_, 8);
+      asr(mul_i16(parameters_.yaw_kp(), error), 8) + asr(state_.yaw_integral_q8, 8);
   // In 32 bits: the sum of two numbers of 16 does not fit the AVR's int.
   return static_cast<int32_t>(command.yaw_rate) + limit_i16(correction, kYawCorrectionLimit);
 }
@@ -88,10 +88,10 @@ DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurem
                            : static_cast<int16_t>(static_cast<uint16_t>(parameters_.accel_limit() +
                                                                         kTickRate_hz - 1) /
                                                   static_cast<uint16_t>(kTickRate_hz));
-  targets_.left = approach(targets_.left, wanted.left, step);
-  targets_.right = approach(targets_.right, wanted.right, step);
-  return {left_.tick(targets_.left, measured.counts_left, measured.battery_mv),
-          right_.tick(targets_.right, measured.counts_right, measured.battery_mv)};
+  state_.targets.left = approach(state_.targets.left, wanted.left, step);
+  state_.targets.right = approach(state_.targets.right, wanted.right, step);
+  return {left_.tick(state_.targets.left, measured.counts_left, measured.battery_mv),
+          right_.tick(state_.targets.right, measured.counts_right, measured.battery_mv)};
 }
 
 }  // namespace screed

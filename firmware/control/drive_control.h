@@ -46,7 +46,7 @@ class DriveControl {
   void idle(const DriveMeasurement& measured);
 
   /// Track speeds asked for after acceleration limit and yaw-rate correction, mm/s.
-  const TrackSpeeds& targets() const { return targets_; }
+  const TrackSpeeds& targets() const { return state_.targets; }
   /// Observed track speeds, 0.1 mm/s.
   int16_t speed_left_dmm_per_s() const { return left_.speed_dmm_per_s(); }
   int16_t speed_right_dmm_per_s() const { return right_.speed_dmm_per_s(); }
@@ -54,12 +54,17 @@ class DriveControl {
   const TrackMotion& right() const { return right_.motion(); }
 
  private:
+  /// What drive control remembers, zero at the start: zeroed at once, which takes less flash.
+  struct State {
+    TrackSpeeds targets;
+    int32_t yaw_integral_q8;  ///< angle units/s
+    int16_t yaw_error;        ///< with a lag, angle units/s
+  };
+
   void forget_yaw();
   int32_t corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate);
 
-  TrackSpeeds targets_ = {0, 0};
-  int32_t yaw_integral_q8_ = 0;  ///< angle units/s
-  int16_t yaw_error_ = 0;        ///< with a lag, angle units/s
+  State state_{};
   int16_t full_speed_mm_per_s_;
   Kept<Parameters> parameters_;
   SkidSteer kinematics_;
