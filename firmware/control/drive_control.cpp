@@ -41,8 +41,7 @@ DriveControl::DriveControl(const BoardConstants& board, const Parameters& parame
       right_(left_) {}
 
 void DriveControl::idle(const DriveMeasurement& measured) {
-  state_.targets = {0, 0};
-  forget_yaw();
+  state_ = {};
   left_.release(measured.counts_left);
   right_.release(measured.counts_right);
 }
