@@ -39,16 +39,18 @@ TrackSpeedControl::TrackSpeedControl(const BoardConstants& board, const Paramete
 
 SCREED_OUT_OF_LINE void TrackSpeedControl::release(int16_t counts) {
   state_.integral_q16 = 0;
-  state_.halfway_q4 = 0;
-  state_.expected_q4 = 0;
+  state_.lagging_q4[0] = 0;
+  state_.lagging_q4[1] = 0;
   state_.motion.effort = 0;
   observe(counts);
 }
 
 void TrackSpeedControl::expect(int16_t target_mm_per_s) {
-  const int32_t target_q4 = mul_i16(target_mm_per_s, 160);
-  state_.halfway_q4 += asr_round((target_q4 - state_.halfway_q4) * kLag_q8, 8);
-  state_.expected_q4 += asr_round((state_.halfway_q4 - state_.expected_q4) * kLag_q8, 8);
+  int32_t target_q4 = mul_i16(target_mm_per_s, 160);
+  for (int32_t& lagging : state_.lagging_q4) {
+    lagging += asr_round((target_q4 - lagging) * kLag_q8, 8);
+    target_q4 = lagging;
+  }
 }
 
 void TrackSpeedControl::observe(int16_t counts) {
@@ -76,7 +78,7 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
     return 0;
   }
 
-  const int16_t error = limit_i16(asr_round(state_.expected_q4, 4) - state_.motion.speed_dmm_per_s,
+  const int16_t error = limit_i16(asr_round(state_.lagging_q4[1], 4) - state_.motion.speed_dmm_per_s,
                                   kErrorLimit_dmm_per_s);
 
   // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is. A

@@ -42,8 +42,8 @@ class TrackSpeedControl {
   struct State {
     int32_t lag_q12;       ///< counts by which the observed position trails the encoder
     int32_t speed_q12;     ///< counts a tick
-    int32_t halfway_q4;    ///< target behind one lag, 0.1 mm/s
-    int32_t expected_q4;   ///< target as the observer would show it, 0.1 mm/s
+    /// target behind one lag and behind two, as the observer would show it, 0.1 mm/s
+    int32_t lagging_q4[2];
     int32_t integral_q16;  ///< duty
     TrackMotion motion;    ///< as others see it
   };
