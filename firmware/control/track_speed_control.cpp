@@ -38,16 +38,14 @@ TrackSpeedControl::TrackSpeedControl(const BoardConstants& board, const Paramete
           quotient_u16(static_cast<uint32_t>(kDutyMax) * 256, board.full_speed_mm_per_s))) {}
 
 SCREED_OUT_OF_LINE void TrackSpeedControl::release(int16_t counts) {
-  state_.integral_q16 = 0;
-  state_.lagging_q4[0] = 0;
-  state_.lagging_q4[1] = 0;
+  state_.control = {};
   state_.motion.effort = 0;
   observe(counts);
 }
 
 void TrackSpeedControl::expect(int16_t target_mm_per_s) {
   int32_t target_q4 = mul_i16(target_mm_per_s, 160);
-  for (int32_t& lagging : state_.lagging_q4) {
+  for (int32_t& lagging : state_.control.lagging_q4) {
     lagging += asr_round((target_q4 - lagging) * kLag_q8, 8);
     target_q4 = lagging;
   }
@@ -73,13 +71,14 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
   const bool standing = state_.motion.speed_dmm_per_s < kStanding_dmm_per_s &&
                         state_.motion.speed_dmm_per_s > static_cast<int16_t>(-kStanding_dmm_per_s);
   if (target_mm_per_s == 0 && standing) {
-    state_.integral_q16 = 0;
+    state_.control.integral_q16 = 0;
     state_.motion.effort = 0;
     return 0;
   }
 
-  const int16_t error = limit_i16(asr_round(state_.lagging_q4[1], 4) - state_.motion.speed_dmm_per_s,
-                                  kErrorLimit_dmm_per_s);
+  const int16_t error =
+      limit_i16(asr_round(state_.control.lagging_q4[1], 4) - state_.motion.speed_dmm_per_s,
+                kErrorLimit_dmm_per_s);
 
   // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is. A
   // lower reading than half the nominal one is implausible; limits the compensation to twice.
@@ -95,15 +94,15 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
 
   // ki/16 duty per mm: each tick adds ki e / 16 / 10 / 100 duty = ki e 131 / 32 in Q16. While the
   // duty is at its limit the integral only moves back from it.
-  const int32_t unlimited = without_integral + asr(state_.integral_q16, 16);
+  const int32_t unlimited = without_integral + asr(state_.control.integral_q16, 16);
   const bool pushes_out = (unlimited >= kDutyMax && error > 0) ||
                           (unlimited <= -static_cast<int32_t>(kDutyMax) && error < 0);
   if (!pushes_out) {
-    state_.integral_q16 =
-        limit_i32(state_.integral_q16 + asr(mul_i16(parameters_.speed_ki(), error) * 131, 5),
-                  kIntegralLimit_q16);
+    state_.control.integral_q16 = limit_i32(
+        state_.control.integral_q16 + asr(mul_i16(parameters_.speed_ki(), error) * 131, 5),
+        kIntegralLimit_q16);
   }
-  const int16_t duty = limit_i16(without_integral + asr(state_.integral_q16, 16), kDutyMax);
+  const int16_t duty = limit_i16(without_integral + asr(state_.control.integral_q16, 16), kDutyMax);
   state_.motion.effort = static_cast<int16_t>(duty - asr(feed_forward_q10, 10));
   return duty;
 }

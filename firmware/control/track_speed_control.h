@@ -37,15 +37,19 @@ class TrackSpeedControl {
   const TrackMotion& motion() const { return state_.motion; }
 
  private:
-  /// What the control of a track remembers, zero at the start: zeroed at once, which takes less
-  /// flash.
-  struct State {
-    int32_t lag_q12;       ///< counts by which the observed position trails the encoder
-    int32_t speed_q12;     ///< counts a tick
+  /// What is forgotten with the motors off.
+  struct Control {
     /// target behind one lag and behind two, as the observer would show it, 0.1 mm/s
     int32_t lagging_q4[2];
     int32_t integral_q16;  ///< duty
-    TrackMotion motion;    ///< as others see it
+  };
+  /// What the control of a track remembers, zero at the start: zeroed at once, which takes less
+  /// flash.
+  struct State {
+    int32_t lag_q12;     ///< counts by which the observed position trails the encoder
+    int32_t speed_q12;   ///< counts a tick
+    TrackMotion motion;  ///< as others see it
+    Control control;
   };
 
   void observe(int16_t counts);
