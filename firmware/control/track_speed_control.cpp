@@ -43,12 +43,13 @@ SCREED_OUT_OF_LINE void TrackSpeedControl::release(int16_t counts) {
   observe(counts);
 }
 
-void TrackSpeedControl::expect(int16_t target_mm_per_s) {
+int32_t TrackSpeedControl::expect(int16_t target_mm_per_s) {
   int32_t target_q4 = mul_i16(target_mm_per_s, 160);
   for (int32_t& lagging : state_.control.lagging_q4) {
     lagging += asr_round((target_q4 - lagging) * kLag_q8, 8);
     target_q4 = lagging;
   }
+  return target_q4;
 }
 
 void TrackSpeedControl::observe(int16_t counts) {
@@ -67,7 +68,7 @@ void TrackSpeedControl::observe(int16_t counts) {
 
 int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_t battery_mv) {
   observe(counts);
-  expect(target_mm_per_s);
+  const int32_t expected_q4 = expect(target_mm_per_s);
   const bool standing = state_.motion.speed_dmm_per_s < kStanding_dmm_per_s &&
                         state_.motion.speed_dmm_per_s > static_cast<int16_t>(-kStanding_dmm_per_s);
   if (target_mm_per_s == 0 && standing) {
@@ -77,7 +78,7 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
   }
 
   const int16_t error =
-      limit_i16(asr_round(state_.control.lagging_q4[1], 4) - state_.motion.speed_dmm_per_s,
+      limit_i16(asr_round(expected_q4, 4) - state_.motion.speed_dmm_per_s,
                 kErrorLimit_dmm_per_s);
 
   // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is. A

@@ -53,7 +53,8 @@ class TrackSpeedControl {
   };
 
   void observe(int16_t counts);
-  void expect(int16_t target_mm_per_s);
+  /// The target as the observer would show it, 0.1 mm/s.
+  int32_t expect(int16_t target_mm_per_s);
 
   State state_{};
   uint16_t count_um_q4_;
