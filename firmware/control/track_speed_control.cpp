@@ -78,8 +78,7 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
   }
 
   const int16_t error =
-      limit_i16(asr_round(expected_q4, 4) - state_.motion.speed_dmm_per_s,
-                kErrorLimit_dmm_per_s);
+      limit_i16(asr_round(expected_q4, 4) - state_.motion.speed_dmm_per_s, kErrorLimit_dmm_per_s);
 
   // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is. A
   // lower reading than half the nominal one is implausible; limits the compensation to twice.
@@ -91,20 +90,26 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
       static_cast<int32_t>(quotient_u16(static_cast<uint32_t>(nominal_mv_) << 6, supply_mv));
   // kp/16 duty per mm/s on an error in 0.1 mm/s: kp e 256 / 160 = kp e 102 / 64 in Q8.
   const int32_t proportional_q8 = asr(mul_i16(parameters_.speed_kp(), error) * 102, 6);
-  const int32_t without_integral = asr(feed_forward_q10, 10) + asr(proportional_q8, 8);
+  // The target is within the full speed: this is 800 at most, the proportional part 5976.
+  const auto feed_forward = static_cast<int16_t>(asr(feed_forward_q10, 10));
+  const auto without_integral =
+      static_cast<int16_t>(feed_forward + static_cast<int16_t>(asr(proportional_q8, 8)));
 
   // ki/16 duty per mm: each tick adds ki e / 16 / 10 / 100 duty = ki e 131 / 32 in Q16. While the
   // duty is at its limit the integral only moves back from it.
-  const int32_t unlimited = without_integral + asr(state_.control.integral_q16, 16);
-  const bool pushes_out = (unlimited >= kDutyMax && error > 0) ||
-                          (unlimited <= -static_cast<int32_t>(kDutyMax) && error < 0);
+  const auto unlimited =
+      static_cast<int16_t>(without_integral + detail::high_half(state_.control.integral_q16));
+  const bool pushes_out =
+      (unlimited >= kDutyMax && error > 0) || (unlimited <= -kDutyMax && error < 0);
   if (!pushes_out) {
     state_.control.integral_q16 = limit_i32(
         state_.control.integral_q16 + asr(mul_i16(parameters_.speed_ki(), error) * 131, 5),
         kIntegralLimit_q16);
   }
-  const int16_t duty = limit_i16(without_integral + asr(state_.control.integral_q16, 16), kDutyMax);
-  state_.motion.effort = static_cast<int16_t>(duty - asr(feed_forward_q10, 10));
+  const int16_t duty = limit_i16(
+      static_cast<int16_t>(without_integral + detail::high_half(state_.control.integral_q16)),
+      kDutyMax);
+  state_.motion.effort = static_cast<int16_t>(duty - feed_forward);
   return duty;
 }
 
