@@ -53,7 +53,7 @@ int32_t TrackSpeedControl::expect(int16_t target_mm_per_s) {
 }
 
 void TrackSpeedControl::observe(int16_t counts) {
-  const int32_t step_q12 = static_cast<int32_t>(counts) * 4096;
+  const int32_t step_q12 = mul_i16(counts, 4096);
   const int32_t error = state_.lag_q12 + step_q12 - state_.speed_q12;
   state_.lag_q12 = error - asr(error * kAlpha_q8, 8);
   // The filter's error stays within a few hundred counts; in Q12 its product with beta needs the
@@ -84,16 +84,16 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
   // lower reading than half the nominal one is implausible; limits the compensation to twice.
   const auto least_mv = static_cast<uint16_t>(nominal_mv_ / 2);
   const uint16_t supply_mv = battery_mv < least_mv ? least_mv : battery_mv;
-  const int32_t nominal_q4 = asr(mul_i16(target_mm_per_s, feed_forward_q8_), 4);
+  const auto nominal_q4 =
+      static_cast<int16_t>(asr(mul_i16(target_mm_per_s, feed_forward_q8_), 4));
   const int32_t feed_forward_q10 =
-      nominal_q4 *
-      static_cast<int32_t>(quotient_u16(static_cast<uint32_t>(nominal_mv_) << 6, supply_mv));
-  // kp/16 duty per mm/s on an error in 0.1 mm/s: kp e 256 / 160 = kp e 102 / 64 in Q8.
-  const int32_t proportional_q8 = asr(mul_i16(parameters_.speed_kp(), error) * 102, 6);
+      mul_i16(nominal_q4, static_cast<int16_t>(quotient_u16(mul_u16(nominal_mv_, 64), supply_mv)));
+  // kp/16 duty per mm/s on an error in 0.1 mm/s: kp e / 160 = kp e 102 / 2^14.
+  const int32_t proportional = asr(mul_i16(parameters_.speed_kp(), error) * 102, 14);
   // The target is within the full speed: this is 800 at most, the proportional part 5976.
   const auto feed_forward = static_cast<int16_t>(asr(feed_forward_q10, 10));
   const auto without_integral =
-      static_cast<int16_t>(feed_forward + static_cast<int16_t>(asr(proportional_q8, 8)));
+      static_cast<int16_t>(feed_forward + static_cast<int16_t>(proportional));
 
   // ki/16 duty per mm: each tick adds ki e / 16 / 10 / 100 duty = ki e 131 / 32 in Q16. While the
   // duty is at its limit the integral only moves back from it.
