@@ -27,8 +27,9 @@ constexpr uint8_t kYawLag = 4;
 // Twice that and half a step still fit 16 bits; 88 degrees/s.
 constexpr int16_t kYawErrorLimit = 16000;
 
+/// Of speeds, whose difference fits 16 bits.
 SCREED_OUT_OF_LINE int16_t approach(int16_t value, int16_t target, int16_t step) {
-  return static_cast<int16_t>(value + limit_i16(static_cast<int32_t>(target) - value, step));
+  return static_cast<int16_t>(value + limit_i16(static_cast<int16_t>(target - value), step));
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ int8_t logarithm_q5(uint16_t value) {
 }
 
 SCREED_OUT_OF_LINE int8_t byte_of(int16_t value) {
-  return static_cast<int8_t>(limit_i16(value, INT8_MAX));
+  return static_cast<int8_t>(clamp_i16(value, -INT8_MAX, INT8_MAX));
 }
 
 constexpr int16_t negated_if(bool negated, int16_t value) {
@@ -147,7 +147,7 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
       state_.yaw_rate + asr_i16(static_cast<int16_t>(rate - state_.yaw_rate), kYawShift));
   const auto effort = static_cast<int16_t>(negated_if(half_left < 0, left.effort) +
                                            negated_if(half_right < 0, right.effort));
-  state_.effort = static_cast<int16_t>(state_.effort + limit_i16(effort, kMaxEffort) -
+  state_.effort = static_cast<int16_t>(state_.effort + clamp_i16(effort, -kMaxEffort, kMaxEffort) -
                                        asr_i16(state_.effort, kEffortShift));
   if (!classify_now) return;
   if (state_.faster_track < kMinTrackSpeed_dmm_per_s) {

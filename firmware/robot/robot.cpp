@@ -71,11 +71,11 @@ void Robot::begin_first_tick(const SensorSample& sample) {
 Robot::Deltas Robot::count_deltas(const SensorSample& sample) {
   // Modulo 2^16: a wrap of the counters has no effect. What no track can make is cut off.
   const Deltas deltas = {
-      limit_i16(static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_left - state_.last_left)),
-                kMaxTrackCounts),
-      limit_i16(
+      clamp_i16(static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_left - state_.last_left)),
+                -kMaxTrackCounts, kMaxTrackCounts),
+      clamp_i16(
           static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_right - state_.last_right)),
-          kMaxTrackCounts)};
+          -kMaxTrackCounts, kMaxTrackCounts)};
   state_.last_left = sample.encoder_left;
   state_.last_right = sample.encoder_right;
   return deltas;
