@@ -8,8 +8,11 @@ namespace {
 
 constexpr int16_t kOne_q12 = 4096;
 
-int16_t limited(int16_t value, int16_t low, int16_t high) {
-  return value < low ? low : (value > high ? high : value);
+/// A row's sum limited to +-1. Out of line: the image has it once.
+__attribute__((noinline)) int16_t limited_row(const int8_t* row, const int8_t* x, uint8_t count) {
+  const int16_t sum = screed_nn_row8(row, x, count);
+  return sum < -kOne_q12 ? static_cast<int16_t>(-kOne_q12)
+                         : (sum < kOne_q12 ? sum : static_cast<int16_t>(kOne_q12 - 1));
 }
 
 }  // namespace
@@ -25,8 +28,7 @@ extern "C" int16_t screed_nn_row8(const int8_t* row, const int8_t* x, uint8_t co
 void gated_candidates(const GatedShape& shape, const int8_t* parameters, const int8_t* x,
                       int16_t* candidates) {
   for (uint8_t i = 0; i < shape.units; ++i) {
-    const int16_t sum = screed_nn_row8(parameters, x, shape.values());
-    candidates[i] = static_cast<int16_t>(limited(sum, -kOne_q12, kOne_q12 - 1) * 8);
+    candidates[i] = static_cast<int16_t>(limited_row(parameters, x, shape.values()) * 8);
     parameters += shape.row_size();
   }
 }
@@ -35,10 +37,9 @@ void gated_update(const GatedShape& shape, const int8_t* parameters, int8_t* x,
                   const int16_t* candidates, int16_t* states, int16_t* outputs) {
   parameters += shape.gates_begin();
   for (uint8_t i = 0; i < shape.units; ++i) {
-    const int16_t sum = screed_nn_row8(parameters, x, shape.values());
     // + 2^12 once within bounds, so that it does not overflow.
     const auto open = static_cast<uint8_t>(
-        static_cast<uint16_t>(limited(sum, -kOne_q12, kOne_q12 - 1) + kOne_q12) >> 5);
+        static_cast<uint16_t>(limited_row(parameters, x, shape.values()) + kOne_q12) >> 5);
     const auto gate = static_cast<uint8_t>(static_cast<uint16_t>(open) * open >> 8);
     const auto half = static_cast<int16_t>((candidates[i] >> 1) - (states[i] >> 1));
     states[i] = static_cast<int16_t>(states[i] + ((static_cast<int32_t>(half) * gate) >> 7));
