@@ -27,10 +27,8 @@ constexpr nn::GatedShape kShape = {kSlipInputs, kSlipUnits, kSlipOutputs};
 static_assert(sizeof nn::model_slip::parameters == kShape.size(), "a network of another shape");
 
 /// part / whole in Q7, 0..127; whole > 0.
-SCREED_OUT_OF_LINE uint8_t share_q7(uint16_t part, uint16_t whole) {
-  return part >= whole
-             ? static_cast<uint8_t>(INT8_MAX)
-             : static_cast<uint8_t>(quotient_u16(static_cast<uint32_t>(part) << 7, whole));
+SCREED_OUT_OF_LINE int8_t share_q7(uint16_t part, uint16_t whole) {
+  return part >= whole ? INT8_MAX : static_cast<int8_t>(quotient_u16(mul_u16(part, 128), whole));
 }
 
 /// 32 log2(value / 2^10) with straight lines between the powers, limited to a byte.
@@ -57,11 +55,6 @@ constexpr int16_t negated_if(bool negated, int16_t value) {
 
 bool SlipWatch::slips() const {
   return state_.evidence >= nn::model_slip::kSlipEvidence;
-}
-
-void SlipWatch::set_share(uint8_t input, bool negative, uint16_t part) {
-  state_.values[input] =
-      static_cast<int8_t>(negated_if(negative, share_q7(part, state_.faster_track)));
 }
 
 void SlipWatch::update_vibration(Vibration& vibration, int16_t counts) {
@@ -170,10 +163,15 @@ void SlipWatch::set_inputs(int16_t half_left, int16_t half_right, int16_t sin_pi
   const bool backwards = state_.half_speed < 0;
   for (uint8_t i = 0; i < 3; ++i) {
     const int16_t lost = saturate_i16(asr(state_.velocity_loss[i], 1));
-    set_share(i, backwards != (lost < 0), abs_i16(lost));
+    const int8_t share = share_q7(abs_i16(lost), state_.faster_track);
+    // Negative where the signs differ.
+    state_.values[i] = (state_.half_speed ^ lost) < 0 ? static_cast<int8_t>(-share) : share;
   }
-  set_share(3, false, static_cast<uint16_t>(mul_u16(abs_i16(state_.yaw_rate), arc_q16_) >> 16));
-  set_share(4, false, abs_i16(static_cast<int16_t>(half_right - half_left)));
+  state_.values[3] =
+      share_q7(static_cast<uint16_t>(mul_u16(abs_i16(state_.yaw_rate), arc_q16_) >> 16),
+               state_.faster_track);
+  state_.values[4] =
+      share_q7(abs_i16(static_cast<int16_t>(half_right - half_left)), state_.faster_track);
   state_.values[5] = byte_of(static_cast<int16_t>(state_.faster_track >> 5));
   state_.values[6] = byte_of(negated_if(backwards, asr_i16(sin_pitch_q14, 6)));
   state_.values[7] = byte_of(asr_i16(state_.effort, 3));

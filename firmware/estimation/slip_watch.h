@@ -108,7 +108,6 @@ class SlipWatch {
 
   static void update_vibration(Vibration& vibration, int16_t counts);
   void feel_collision(int16_t residual);
-  void set_share(uint8_t input, bool negative, uint16_t part);
   void set_inputs(int16_t half_left, int16_t half_right, int16_t sin_pitch_q14);
   void conclude();
   void forget();
