@@ -87,6 +87,7 @@ class SlipWatch {
     int16_t effort;            // smoothed over 8 ticks, Q3 duty
     int16_t half_speed;        // of the belts in the tick before, half of 0.1 mm/s
     uint16_t evidence;         // mean of the output "held", 0..65535
+    Vibration vibration[3];    // pitch rate, specific force ahead, up
     bool stuck;
     bool half_done;  // of a step of the network
     uint8_t travel_share;
@@ -103,7 +104,6 @@ class SlipWatch {
     int8_t values[kSlipInputs + kSlipUnits];
     int16_t candidates[kSlipUnits];
     int16_t states[kSlipUnits];
-    Vibration vibration[3];  // pitch rate, specific force ahead, up
   };
 
   static void update_vibration(Vibration& vibration, int16_t counts);
