@@ -11,6 +11,8 @@
 //   evidence  += ((held + 1) / 2 - evidence) / 4  every fourth tick: 0.16 s
 #include "firmware/estimation/slip_watch.h"
 
+#include <string.h>
+
 #include "firmware/estimation/slip_model.h"
 #include "nn/infer/gated.h"
 
@@ -82,11 +84,8 @@ SCREED_OUT_OF_LINE void SlipWatch::feel_collision(int16_t residual) {
 
 /// What was lost, and the network's memory.
 void SlipWatch::forget() {
-  for (int32_t& loss : state_.velocity_loss) loss = 0;
-  for (uint8_t i = 0; i < kSlipUnits; ++i) {
-    state_.states[i] = 0;
-    state_.values[kSlipInputs + i] = 0;
-  }
+  state_.memory = {};
+  memset(state_.values + kSlipInputs, 0, kSlipUnits);
 }
 
 void SlipWatch::pass_over(const TrackMotion& left, const TrackMotion& right) {
@@ -128,8 +127,8 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   } else {
     state_.mean += residual;
     for (uint8_t i = 0; i < 3; ++i)
-      state_.velocity_loss[i] +=
-          residual - asr(state_.velocity_loss[i], static_cast<uint8_t>(6 + 2 * i));
+      state_.memory.velocity_loss[i] +=
+          residual - asr(state_.memory.velocity_loss[i], static_cast<uint8_t>(6 + 2 * i));
   }
   update_vibration(state_.vibration[0], gyro[1]);
   update_vibration(state_.vibration[1], accel[0]);
@@ -162,7 +161,7 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
 void SlipWatch::set_inputs(int16_t half_left, int16_t half_right, int16_t sin_pitch_q14) {
   const bool backwards = state_.half_speed < 0;
   for (uint8_t i = 0; i < 3; ++i) {
-    const int16_t lost = saturate_i16(asr(state_.velocity_loss[i], 1));
+    const int16_t lost = saturate_i16(asr(state_.memory.velocity_loss[i], 1));
     const int8_t share = share_q7(abs_i16(lost), state_.faster_track);
     // Negative where the signs differ.
     state_.values[i] = (state_.half_speed ^ lost) < 0 ? static_cast<int8_t>(-share) : share;
@@ -184,7 +183,7 @@ void SlipWatch::set_inputs(int16_t half_left, int16_t half_right, int16_t sin_pi
 void SlipWatch::conclude() {
   int16_t outputs[kSlipOutputs];
   nn::gated_update(kShape, nn::model_slip::parameters, state_.values, state_.candidates,
-                   state_.states, outputs);
+                   state_.memory.states, outputs);
   state_.evidence = slip_evidence(state_.evidence, outputs[0]);
   if (state_.evidence >= nn::model_slip::kStuckEvidence) state_.stuck = true;
   if (state_.evidence < nn::model_slip::kFreeEvidence) state_.stuck = false;

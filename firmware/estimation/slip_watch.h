@@ -77,9 +77,13 @@ class SlipWatch {
     int16_t band_pass;   // 4 times what differs from the mean, smoothed over 4 ticks
     uint16_t magnitude;  // 16 times the mean of its absolute value over 0.16 s
   };
+  /// What is forgotten while the tracks stand.
+  struct Memory {
+    int32_t velocity_loss[3];    // belts' speed minus that by inertia; about 0.05 mm/s
+    int16_t states[kSlipUnits];  // of the network
+  };
   struct State {
     int32_t mean;  // of what enters velocity_loss when nothing slips: bias, error of the pitch; Q9
-    int32_t velocity_loss[3];  // belts' speed minus that by inertia; about 0.05 mm/s
     int16_t lost;              // speed lost in a few ticks, in the same unit
     uint8_t collision_ticks;   // left until a collision is long ago
     uint16_t faster_track;     // track's speed, 0.1 mm/s
@@ -102,8 +106,8 @@ class SlipWatch {
     //   8-10  vibration of pitch rate, force ahead, force up: 32 log2 of it, 0 at 16 counts
     //   11    mean pitch rate, counts
     int8_t values[kSlipInputs + kSlipUnits];
+    Memory memory;
     int16_t candidates[kSlipUnits];
-    int16_t states[kSlipUnits];
   };
 
   static void update_vibration(Vibration& vibration, int16_t counts);
