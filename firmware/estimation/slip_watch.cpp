@@ -121,15 +121,16 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
                            asr_i16(saturate_i16(asr(state_.mean, 8)), 1);
   feel_collision(limit_i16(residual, kMaxResidual));
   // While the tracks stand the mean is learned quickly and nothing is lost; then it follows slowly.
+  int32_t learned = residual;
   if (state_.faster_track < kStanding_dmm_per_s) {
-    state_.mean += residual * 8;
+    learned *= 8;
     forget();
   } else {
-    state_.mean += residual;
     for (uint8_t i = 0; i < 3; ++i)
       state_.memory.velocity_loss[i] +=
           residual - asr(state_.memory.velocity_loss[i], static_cast<uint8_t>(6 + 2 * i));
   }
+  state_.mean += learned;
   update_vibration(state_.vibration[0], gyro[1]);
   update_vibration(state_.vibration[1], accel[0]);
   update_vibration(state_.vibration[2], accel[2]);
