@@ -106,6 +106,14 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
                      bool classify_now) {
   const int16_t half_left = asr_i16(left.speed_dmm_per_s, 1);
   const int16_t half_right = asr_i16(right.speed_dmm_per_s, 1);
+  const auto effort = static_cast<int16_t>(negated_if(half_left < 0, left.effort) +
+                                           negated_if(half_right < 0, right.effort));
+  state_.effort = static_cast<int16_t>(state_.effort + clamp_i16(effort, -kMaxEffort, kMaxEffort) -
+                                       asr_i16(state_.effort, kEffortShift));
+  // Twice halved, so that a difference fits 16 bits.
+  const int16_t rate = asr_i16(saturate_i16(asr(yaw_rate, 1)), 1);
+  state_.yaw_rate = static_cast<int16_t>(
+      state_.yaw_rate + asr_i16(static_cast<int16_t>(rate - state_.yaw_rate), kYawShift));
   const uint16_t left_speed = abs_i16(half_left);
   const uint16_t right_speed = abs_i16(half_right);
   state_.faster_track =
@@ -134,14 +142,6 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   update_vibration(state_.vibration[0], gyro[1]);
   update_vibration(state_.vibration[1], accel[0]);
   update_vibration(state_.vibration[2], accel[2]);
-  // Twice halved, so that a difference fits 16 bits.
-  const int16_t rate = asr_i16(saturate_i16(asr(yaw_rate, 1)), 1);
-  state_.yaw_rate = static_cast<int16_t>(
-      state_.yaw_rate + asr_i16(static_cast<int16_t>(rate - state_.yaw_rate), kYawShift));
-  const auto effort = static_cast<int16_t>(negated_if(half_left < 0, left.effort) +
-                                           negated_if(half_right < 0, right.effort));
-  state_.effort = static_cast<int16_t>(state_.effort + clamp_i16(effort, -kMaxEffort, kMaxEffort) -
-                                       asr_i16(state_.effort, kEffortShift));
   if (!classify_now) return;
   if (state_.faster_track < kMinTrackSpeed_dmm_per_s) {
     state_.evidence = 0;
