@@ -114,6 +114,9 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   const int16_t rate = asr_i16(saturate_i16(asr(yaw_rate, 1)), 1);
   state_.yaw_rate = static_cast<int16_t>(
       state_.yaw_rate + asr_i16(static_cast<int16_t>(rate - state_.yaw_rate), kYawShift));
+  update_vibration(state_.vibration[0], gyro[1]);
+  update_vibration(state_.vibration[1], accel[0]);
+  update_vibration(state_.vibration[2], accel[2]);
   const uint16_t left_speed = abs_i16(half_left);
   const uint16_t right_speed = abs_i16(half_right);
   state_.faster_track =
@@ -139,9 +142,6 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
           residual - asr(state_.memory.velocity_loss[i], static_cast<uint8_t>(6 + 2 * i));
   }
   state_.mean += learned;
-  update_vibration(state_.vibration[0], gyro[1]);
-  update_vibration(state_.vibration[1], accel[0]);
-  update_vibration(state_.vibration[2], accel[2]);
   if (!classify_now) return;
   if (state_.faster_track < kMinTrackSpeed_dmm_per_s) {
     state_.evidence = 0;
