@@ -116,8 +116,8 @@ class SlipWatch {
   void conclude();
   void forget();
 
-  State state_{};
   uint16_t arc_q16_;  ///< 0.1 mm/s at the track per four units of yaw rate
+  State state_{};
 };
 
 }  // namespace screed
