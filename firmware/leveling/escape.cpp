@@ -42,60 +42,59 @@ constexpr uint16_t kFreeTicks = 10 * kTickRate_hz;
 }  // namespace
 
 SCREED_OUT_OF_LINE void Escape::start() {
-  ticks_left_ = 0;
-  attempt_ = 0;
-  steps_left_ = 0;
-  gave_up_ = false;
+  state_ = {};
 }
 
 void Escape::begin(uint8_t way) {
-  way_ = way;
-  steps_left_ = read_program_u8(&kWays[way][kWayBytes - 1]);
+  state_.way = way;
+  state_.steps_left = read_program_u8(&kWays[way][kWayBytes - 1]);
 }
 
 void Escape::begin_step() {
-  const uint8_t* step = kWays[way_];
-  if ((steps_left_ & 1U) != 0) step += kStepBytes;
-  motion_.speed_mm_per_s = static_cast<int16_t>(2 * static_cast<int8_t>(read_program_u8(step)));
-  if (mirrored_) motion_.speed_mm_per_s = static_cast<int16_t>(-motion_.speed_mm_per_s);
+  const uint8_t* step = kWays[state_.way];
+  if ((state_.steps_left & 1U) != 0) step += kStepBytes;
+  state_.motion.speed_mm_per_s =
+      static_cast<int16_t>(2 * static_cast<int8_t>(read_program_u8(step)));
+  if (state_.mirrored)
+    state_.motion.speed_mm_per_s = static_cast<int16_t>(-state_.motion.speed_mm_per_s);
   uint8_t turn = read_program_u8(step + 1);
-  if ((attempt_ & 1U) == 0) turn = static_cast<uint8_t>(-turn);
-  motion_.yaw_rate = static_cast<YawRate>(static_cast<int8_t>(turn) * 256);
+  if ((state_.attempt & 1U) == 0) turn = static_cast<uint8_t>(-turn);
+  state_.motion.yaw_rate = static_cast<YawRate>(static_cast<int8_t>(turn) * 256);
   uint8_t time = read_program_u8(step + 2);
   // Outside a robot that is stuck again and again would get farther away, and turned by more than
   // 45 degrees it would turn back on the spot (site.cpp) and dig in there.
-  if (outside_ && way_ == 0) time = static_cast<uint8_t>(time >> 1);
-  ticks_left_ = static_cast<uint16_t>(time * 4U);
+  if (state_.outside && state_.way == 0) time = static_cast<uint8_t>(time >> 1);
+  state_.ticks_left = static_cast<uint16_t>(time * 4U);
 }
 
 bool Escape::tick(bool stuck, bool backwards, bool outside) {
-  gave_up_ = false;
-  if (ticks_left_ != 0) --ticks_left_;
+  state_.gave_up = false;
+  if (state_.ticks_left != 0) --state_.ticks_left;
   uint8_t next_way = 0;  // loose, perhaps: out of there
-  if (steps_left_ == 0) {
+  if (state_.steps_left == 0) {
     if (!stuck) {
-      if (ticks_left_ == 0) attempt_ = 0;
+      if (state_.ticks_left == 0) state_.attempt = 0;
       return false;
     }
-    if (attempt_ == attempts_) {
-      gave_up_ = attempts_ != 0;
+    if (state_.attempt == attempts_) {
+      state_.gave_up = attempts_ != 0;
       return false;
     }
-    next_way = attempt_ & kLastWay;
+    next_way = state_.attempt & kLastWay;
     // Outside it backs off once. What else it tries leads on, inwards.
-    mirrored_ = backwards != (outside && next_way != 0);
-    outside_ = outside;
-    ++attempt_;
+    state_.mirrored = backwards != (outside && next_way != 0);
+    state_.outside = outside;
+    ++state_.attempt;
   } else {
-    if (ticks_left_ != 0) return true;
-    --steps_left_;
-    if (way_ == 0) next_way = kStand;
-    if (steps_left_ == 0 && way_ == kStand) {
-      ticks_left_ = kFreeTicks;
+    if (state_.ticks_left != 0) return true;
+    --state_.steps_left;
+    if (state_.way == 0) next_way = kStand;
+    if (state_.steps_left == 0 && state_.way == kStand) {
+      state_.ticks_left = kFreeTicks;
       return false;
     }
   }
-  if (steps_left_ == 0) begin(next_way);
+  if (state_.steps_left == 0) begin(next_way);
   begin_step();
   return true;
 }

@@ -29,23 +29,28 @@ class Escape {
   /// One tick of a robot that runs. Returns true while the manoeuvre drives, with motion().
   /// backwards: it was told to drive so before; outside: of its site.
   SCREED_OUT_OF_LINE bool tick(bool stuck, bool backwards = false, bool outside = false);
-  const MotionCommand& motion() const { return motion_; }
+  const MotionCommand& motion() const { return state_.motion; }
   /// Stuck, and no attempt is left: in this tick.
-  bool gave_up() const { return gave_up_; }
+  bool gave_up() const { return state_.gave_up; }
 
  private:
   void begin(uint8_t way);
   void begin_step();
 
-  MotionCommand motion_ = {0, 0};
-  uint16_t ticks_left_ = 0;  ///< of the step; of the time in which the attempts count
-  uint8_t attempts_;         ///< 0: no escape
-  uint8_t attempt_ = 0;      ///< how many were begun since the robot was free for long
-  uint8_t way_ = 0;          ///< to come loose
-  uint8_t steps_left_ = 0;   ///< of that way; 0: does not drive
-  bool mirrored_ = false;    ///< it drove backwards into where it is stuck
-  bool outside_ = false;     ///< it drove back to its site
-  bool gave_up_ = false;
+  /// Zero at the start, and zeroed at once, which takes less flash.
+  struct State {
+    MotionCommand motion;
+    uint16_t ticks_left;  ///< of the step; of the time in which the attempts count
+    uint8_t attempt;      ///< how many were begun since the robot was free for long
+    uint8_t way;          ///< to come loose
+    uint8_t steps_left;   ///< of that way; 0: does not drive
+    bool mirrored;        ///< it drove backwards into where it is stuck
+    bool outside;         ///< it drove back to its site
+    bool gave_up;
+  };
+
+  uint8_t attempts_;  ///< 0: no escape
+  State state_{};
 };
 
 }  // namespace screed
