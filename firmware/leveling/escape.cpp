@@ -45,18 +45,15 @@ SCREED_OUT_OF_LINE void Escape::start() {
   state_ = {};
 }
 
-void Escape::begin(uint8_t way) {
-  state_.way = way;
-  state_.steps_left = read_program_u8(&kWays[way][kWayBytes - 1]);
-}
-
-void Escape::begin_step() {
+void Escape::begin_step(uint8_t next_way) {
+  const bool new_way = state_.steps_left == 0;
+  if (new_way) state_.way = next_way;
   const uint8_t* step = kWays[state_.way];
+  if (new_way) state_.steps_left = read_program_u8(step + kWayBytes - 1);
   if ((state_.steps_left & 1U) != 0) step += kStepBytes;
-  state_.motion.speed_mm_per_s =
-      static_cast<int16_t>(2 * static_cast<int8_t>(read_program_u8(step)));
-  if (state_.mirrored)
-    state_.motion.speed_mm_per_s = static_cast<int16_t>(-state_.motion.speed_mm_per_s);
+  auto speed = static_cast<int8_t>(read_program_u8(step));
+  if (state_.mirrored) speed = static_cast<int8_t>(-speed);
+  state_.motion.speed_mm_per_s = static_cast<int16_t>(2 * speed);
   uint8_t turn = read_program_u8(step + 1);
   if ((state_.attempt & 1U) == 0) turn = static_cast<uint8_t>(-turn);
   state_.motion.yaw_rate = static_cast<YawRate>(static_cast<int8_t>(turn) * 256);
@@ -94,8 +91,7 @@ bool Escape::tick(bool stuck, bool backwards, bool outside) {
       return false;
     }
   }
-  if (state_.steps_left == 0) begin(next_way);
-  begin_step();
+  begin_step(next_way);
   return true;
 }
 

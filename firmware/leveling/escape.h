@@ -34,8 +34,8 @@ class Escape {
   bool gave_up() const { return state_.gave_up; }
 
  private:
-  void begin(uint8_t way);
-  void begin_step();
+  /// The next step of the way, or the first one of the next way.
+  void begin_step(uint8_t next_way);
 
   /// Zero at the start, and zeroed at once, which takes less flash.
   struct State {
