@@ -32,11 +32,20 @@ static_assert(static_cast<uint8_t>(Request::kArm) == static_cast<uint8_t>(Comman
                   static_cast<uint8_t>(Request::kClear) == static_cast<uint8_t>(CommandOp::kClear),
               "these commands are requests of the same number");
 
-/// Bytes of a message of the ground station that carries a CRC.
+/// Bytes of a message of the ground station; 0: of somebody else.
 uint8_t size_of(uint16_t id) {
-  if (id == kIdEmergencyStop) return message::EmergencyStop::kSize;
-  if (id == kIdParamStage) return message::ParamStage::kSize;
-  return message::GroundHeartbeat::kSize;
+  switch (id) {
+    case kIdCommand:
+      return kCommandSize;
+    case kIdGroundHeartbeat:
+      return message::GroundHeartbeat::kSize;
+    case kIdEmergencyStop:
+      return message::EmergencyStop::kSize;
+    case kIdParamStage:
+      return message::ParamStage::kSize;
+    default:
+      return 0;
+  }
 }
 
 // No ground to level is that steep for long; beds of the steepest relief have 25 degrees.
@@ -108,7 +117,7 @@ SCREED_OUT_OF_LINE void Robot::estimate_pose(const SensorSample& sample, const D
 }
 
 void Robot::receive(const SensorSample& sample) {
-  CanFrame frame{};
+  CanFrame frame;  // what is read of it the parser has written
   const uint8_t count =
       sample.radio_in_count < kRadioInCapacity ? sample.radio_in_count : kRadioInCapacity;
   for (uint8_t i = 0; i < count; ++i) {
@@ -118,39 +127,34 @@ void Robot::receive(const SensorSample& sample) {
 
 void Robot::handle(const CanFrame& frame) {
   const uint16_t id = telemetry_.exchange(frame.id);
-  switch (id) {
-    case kIdCommand:
-      // Authenticated by its MAC, which a later tick checks. While one command waits, others are
-      // dropped.
-      if (frame.size != kCommandSize || state_.command_pending) break;
-      memcpy(state_.command, frame.data, kCommandSize);
-      state_.command_pending = true;
-      ++state_.uplink.frames_received;
-      return;
-    case kIdGroundHeartbeat:
-    case kIdEmergencyStop:
-    case kIdParamStage:
-      if (frame.size != size_of(id) || !e2e_check(frame.id, frame.data, frame.size)) break;
-      ++state_.uplink.frames_received;
-      if (id == kIdEmergencyStop) {
-        supervisor_.request(Request::kEmergencyStop);
-      } else if (id == kIdParamStage) {
-        memcpy(state_.staged, frame.data + kE2eHeaderSize, kStagedSize);
-      } else {
-        const auto counter = static_cast<uint8_t>((frame.data[1] & 0x0FU) + 1U);
-        // A sender whose counter stands still has crashed: not a sign of life.
-        if (counter != state_.ground_counter) {
-          supervisor_.heartbeat();
-          ++state_.uplink.ground_heartbeats;
-        }
-        state_.ground_counter = counter;
-        state_.uplink.ground_time_ms = get_u16(frame.data + kE2eHeaderSize);
-      }
-      return;
-    default:
-      return;  // for somebody else
+  const uint8_t size = size_of(id);
+  if (size == 0) return;
+  // A command is authenticated by its MAC, which a later tick checks. While one waits, others are
+  // dropped.
+  const bool command = id == kIdCommand;
+  if (frame.size != size ||
+      (command ? state_.command_pending : !e2e_check(frame.id, frame.data, frame.size))) {
+    ++state_.uplink.rejected_frames;
+    return;
   }
-  ++state_.uplink.rejected_frames;
+  ++state_.uplink.frames_received;
+  if (command) {
+    memcpy(state_.command, frame.data, kCommandSize);
+    state_.command_pending = true;
+  } else if (id == kIdEmergencyStop) {
+    supervisor_.request(Request::kEmergencyStop);
+  } else if (id == kIdParamStage) {
+    memcpy(state_.staged, frame.data + kE2eHeaderSize, kStagedSize);
+  } else {
+    const auto counter = static_cast<uint8_t>((frame.data[1] & 0x0FU) + 1U);
+    // A sender whose counter stands still has crashed: not a sign of life.
+    if (counter != state_.ground_counter) {
+      supervisor_.heartbeat();
+      ++state_.uplink.ground_heartbeats;
+    }
+    state_.ground_counter = counter;
+    state_.uplink.ground_time_ms = get_u16(frame.data + kE2eHeaderSize);
+  }
 }
 
 // Not in a tick with a telemetry packet: both together would exceed the longest tick.
