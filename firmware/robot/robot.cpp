@@ -70,13 +70,6 @@ Robot::Robot(const BoardConstants& board, const Parameters& parameters,
       gate_(credentials),
       position_(board.count_um_q4, parameters.position_noise()) {}
 
-void Robot::begin_first_tick(const SensorSample& sample) {
-  event(message::EventCode::kStarted, sample.reset_cause);
-  state_.last_left = sample.encoder_left;
-  state_.last_right = sample.encoder_right;
-  state_.started = true;
-}
-
 Robot::Deltas Robot::count_deltas(const SensorSample& sample) {
   // Modulo 2^16: a wrap of the counters has no effect. What no track can make is cut off.
   const Deltas deltas = {
@@ -397,8 +390,12 @@ void Robot::tick(const SensorSample& sample, RobotOutput& output) {
   // The sensor says 8184 LSB at most; a board makes less than 8 mV of each, so 16 bits hold it.
   state_.status.battery_mv =
       quotient_u16(mul_u16(sample.battery & 0x1FFFU, board().battery_uv_per_lsb), 1000);
-  if (!state_.started) begin_first_tick(sample);
-  const Deltas deltas = count_deltas(sample);
+  Deltas deltas = count_deltas(sample);
+  if (!state_.started) {
+    event(message::EventCode::kStarted, sample.reset_cause);
+    deltas = {0, 0};
+    state_.started = true;
+  }
 
   estimate_pose(sample, deltas);
   receive(sample);

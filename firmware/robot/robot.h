@@ -106,7 +106,6 @@ class Robot : private OwnBoard {
 
   static constexpr uint8_t kStagedCrcBytes = 4;  ///< index and lower half of the value
 
-  void begin_first_tick(const SensorSample& sample);
   Deltas count_deltas(const SensorSample& sample);
   void estimate_pose(const SensorSample& sample, const Deltas& deltas);
   void receive(const SensorSample& sample);
