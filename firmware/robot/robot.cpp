@@ -48,6 +48,13 @@ uint8_t size_of(uint16_t id) {
   }
 }
 
+/// Modulo 2^16: a wrap of the counters has no effect. What no track can make is cut off.
+SCREED_OUT_OF_LINE int16_t counts_since(uint16_t& last, uint16_t now) {
+  const auto counts = static_cast<int16_t>(static_cast<uint16_t>(now - last));
+  last = now;
+  return clamp_i16(counts, -kMaxTrackCounts, kMaxTrackCounts);
+}
+
 // No ground to level is that steep for long; beds of the steepest relief have 25 degrees.
 constexpr uint16_t kWallPitch = angle_from_centidegrees(3000);
 
@@ -71,16 +78,8 @@ Robot::Robot(const BoardConstants& board, const Parameters& parameters,
       position_(board.count_um_q4, parameters.position_noise()) {}
 
 Robot::Deltas Robot::count_deltas(const SensorSample& sample) {
-  // Modulo 2^16: a wrap of the counters has no effect. What no track can make is cut off.
-  const Deltas deltas = {
-      clamp_i16(static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_left - state_.last_left)),
-                -kMaxTrackCounts, kMaxTrackCounts),
-      clamp_i16(
-          static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_right - state_.last_right)),
-          -kMaxTrackCounts, kMaxTrackCounts)};
-  state_.last_left = sample.encoder_left;
-  state_.last_right = sample.encoder_right;
-  return deltas;
+  return {counts_since(state_.last_left, sample.encoder_left),
+          counts_since(state_.last_right, sample.encoder_right)};
 }
 
 SCREED_OUT_OF_LINE void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
