@@ -150,8 +150,7 @@ uint16_t Supervisor::look_for_faults(const Parameters& parameters, const Supervi
     same = same && input.gyro[i] == state_.last_gyro[i];
     state_.last_gyro[i] = input.gyro[i];
   }
-  if (new_gyro)
-    state_.frozen_gyro_ticks = same ? count_up(state_.frozen_gyro_ticks) : static_cast<uint8_t>(0);
+  if (new_gyro) lasts(same, state_.frozen_gyro_ticks, kFrozenTicks);
   if (state_.frozen_gyro_ticks >= kFrozenTicks) found |= Fault::kGyroFrozen;
 
   const auto failing = static_cast<uint8_t>(input.chips_failing & kVitalChips);
