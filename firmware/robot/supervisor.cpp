@@ -93,6 +93,22 @@ bool TrackWatch::alternates() const {
   return reversals_ >= kReversals;
 }
 
+SCREED_OUT_OF_LINE uint16_t TrackWatch::faults(int16_t duty, int16_t counts,
+                                               int16_t speed_dmm_per_s,
+                                               uint16_t full_speed_mm_per_s, uint16_t stall_ticks) {
+  tick(duty, counts);
+  compare(duty, speed_dmm_per_s, full_speed_mm_per_s);
+  uint16_t found = 0;
+  if (still_ticks_ >= stall_ticks) found |= Fault::kStallLeft;
+  if (alternates()) found |= Fault::kEncoderLeft;
+  if (disobeys()) found |= Fault::kMotorLeft;
+  return found;
+}
+
+static_assert(Fault::kStallRight == Fault::kStallLeft << 1 &&
+                  Fault::kEncoderRight == Fault::kEncoderLeft << 1 &&
+                  Fault::kMotorRight == Fault::kMotorLeft << 1,
+              "faults of the right track are those of the left one, shifted");
 static_assert(Fault::kAccelMagChip == ChipBit::kAccelMagChip << 8 &&
                   Fault::kGyroChip == ChipBit::kGyroChip << 8,
               "faults of chips are their bits, shifted");
@@ -158,17 +174,14 @@ uint16_t Supervisor::look_for_faults(const Parameters& parameters, const Supervi
     found |= static_cast<uint16_t>(static_cast<uint16_t>(failing) << 8);
   }
 
-  state_.left.tick(input.duty_left, input.counts_left);
-  state_.right.tick(input.duty_right, input.counts_right);
   const uint16_t stall_ticks = ticks_from_ms(parameters.stall_time());
-  if (state_.left.still_ticks() >= stall_ticks) found |= Fault::kStallLeft;
-  if (state_.right.still_ticks() >= stall_ticks) found |= Fault::kStallRight;
-  if (state_.left.alternates()) found |= Fault::kEncoderLeft;
-  if (state_.right.alternates()) found |= Fault::kEncoderRight;
-  state_.left.compare(input.duty_left, input.speed_left_dmm_per_s, input.full_speed_mm_per_s);
-  state_.right.compare(input.duty_right, input.speed_right_dmm_per_s, input.full_speed_mm_per_s);
-  if (state_.left.disobeys()) found |= Fault::kMotorLeft;
-  if (state_.right.disobeys()) found |= Fault::kMotorRight;
+  found |= state_.left.faults(input.duty_left, input.counts_left, input.speed_left_dmm_per_s,
+                              input.full_speed_mm_per_s, stall_ticks);
+  // The faults of the right track are the next bits.
+  found |= static_cast<uint16_t>(state_.right.faults(input.duty_right, input.counts_right,
+                                                     input.speed_right_dmm_per_s,
+                                                     input.full_speed_mm_per_s, stall_ticks)
+                                 << 1);
 
   state_.stuck_for = input.stuck ? count_up(state_.stuck_for) : static_cast<uint16_t>(0);
   const uint16_t stuck_ticks = ticks_from_ms(parameters.stuck_time());

@@ -79,6 +79,9 @@ class TrackWatch {
   /// Ticks at high duty without progress.
   uint16_t still_ticks() const { return still_ticks_; }
   bool alternates() const;
+  /// tick() and compare(), and what they find, as the left track's faults (bits of Fault).
+  uint16_t faults(int16_t duty, int16_t counts, int16_t speed_dmm_per_s,
+                  uint16_t full_speed_mm_per_s, uint16_t stall_ticks);
 
  private:
   uint16_t still_ticks_ = 0;
