@@ -24,7 +24,7 @@ constexpr uint16_t kMinRestAccel = 819;
 constexpr uint16_t kMaxRestAccel = 1229;
 // A track that does not move below this duty is not stalled, it is asked for too little: 69 mm/s
 // without load. A blocked track that is to drive slower gets it within 50 ms.
-constexpr int16_t kStallDuty = 110;
+constexpr uint16_t kStallDuty = 110;
 // From this duty on a track is meant to move.
 constexpr int16_t kPushDuty = 60;
 // A track that moves faster than two fifths of its full speed (in mm/s: 4 of it in 0.1 mm/s)
@@ -54,7 +54,7 @@ SCREED_OUT_OF_LINE bool lasts(bool now, uint8_t& ticks, uint8_t enough) {
 }  // namespace
 
 void TrackWatch::tick(int16_t duty, int16_t counts) {
-  const int16_t push = duty < 0 ? static_cast<int16_t>(-duty) : duty;
+  const uint16_t push = abs_i16(duty);
   const int16_t backward = duty < 0 ? counts : static_cast<int16_t>(-counts);
   const bool near = backward >= -1 && backward <= 1;
   const int8_t behind =
@@ -66,7 +66,7 @@ void TrackWatch::tick(int16_t duty, int16_t counts) {
     return;
   }
   counts_behind_farthest_ = behind;
-  if (backward != 0) reversals_ = count_up(reversals_);
+  if (backward != 0 && reversals_ < kReversals) ++reversals_;
   still_ticks_ = push < kStallDuty ? static_cast<uint16_t>(0) : count_up(still_ticks_);
 }
 
@@ -99,9 +99,9 @@ SCREED_OUT_OF_LINE uint16_t TrackWatch::faults(int16_t duty, int16_t counts,
   tick(duty, counts);
   compare(duty, speed_dmm_per_s, full_speed_mm_per_s);
   uint16_t found = 0;
-  if (still_ticks_ >= stall_ticks) found |= Fault::kStallLeft;
   if (alternates()) found |= Fault::kEncoderLeft;
   if (disobeys()) found |= Fault::kMotorLeft;
+  if (still_ticks_ >= stall_ticks) found |= Fault::kStallLeft;
   return found;
 }
 
