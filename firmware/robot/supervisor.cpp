@@ -78,7 +78,7 @@ void TrackWatch::compare(int16_t duty, int16_t speed_dmm_per_s, uint16_t full_sp
   if (reversed ||
       (along < kPushDuty && speed > static_cast<uint16_t>(kDrivenSpeed * full_speed_mm_per_s))) {
     if (disobedience_ < kDisobedienceTicks) {
-      disobedience_ = static_cast<uint8_t>(disobedience_ + (reversed ? 2 : 1));
+      disobedience_ = static_cast<uint8_t>(disobedience_ + 1 + (reversed ? 1 : 0));
     }
   } else {
     disobedience_ = 0;
