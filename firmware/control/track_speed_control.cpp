@@ -29,13 +29,12 @@ constexpr int16_t kErrorLimit_dmm_per_s = 3000;
 
 }  // namespace
 
-SCREED_OUT_OF_LINE
 TrackSpeedControl::TrackSpeedControl(const BoardConstants& board, const Parameters& parameters)
-    : count_um_q4_(board.count_um_q4),
-      nominal_mv_(board.motor_nominal_mv),
-      parameters_(parameters),
-      feed_forward_q8_(static_cast<int16_t>(
-          quotient_u16(static_cast<uint32_t>(kDutyMax) * 256, board.full_speed_mm_per_s))) {}
+    : OwnBoard(board), parameters_(parameters) {}
+
+int16_t TrackSpeedControl::feed_forward_q8() const {
+  return static_cast<int16_t>(static_cast<uint32_t>(kDutyMax) * 256 / board().full_speed_mm_per_s);
+}
 
 SCREED_OUT_OF_LINE void TrackSpeedControl::release(int16_t counts) {
   state_.control = {};
@@ -61,8 +60,8 @@ void TrackSpeedControl::observe(int16_t counts) {
   state_.speed_q12 += asr(asr(error, 2) * kBeta_q12, 10);
   // counts/tick Q12 * um Q4 * 100 ticks/s = 0.1 mm/s Q16, from the speed's upper and lower 16 bits:
   // noise at the limit is 5.7 m/s on the Rover 5, and that product passes 32 bits.
-  const int32_t whole = detail::mul_su(detail::high_half(state_.speed_q12), count_um_q4_);
-  const uint32_t part = mul_u16(detail::low_half(state_.speed_q12), count_um_q4_) >> 16;
+  const int32_t whole = detail::mul_su(detail::high_half(state_.speed_q12), board().count_um_q4);
+  const uint32_t part = mul_u16(detail::low_half(state_.speed_q12), board().count_um_q4) >> 16;
   state_.motion.speed_dmm_per_s = saturate_i16(whole + static_cast<int32_t>(part));
 }
 
@@ -82,12 +81,12 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
 
   // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is. A
   // lower reading than half the nominal one is implausible; limits the compensation to twice.
-  const auto least_mv = static_cast<uint16_t>(nominal_mv_ / 2);
+  const auto least_mv = static_cast<uint16_t>(board().motor_nominal_mv / 2);
   const uint16_t supply_mv = battery_mv < least_mv ? least_mv : battery_mv;
-  const auto nominal_q4 =
-      static_cast<int16_t>(asr(mul_i16(target_mm_per_s, feed_forward_q8_), 4));
+  const auto nominal_q4 = static_cast<int16_t>(asr(mul_i16(target_mm_per_s, feed_forward_q8()), 4));
   const int32_t feed_forward_q10 =
-      mul_i16(nominal_q4, static_cast<int16_t>(quotient_u16(mul_u16(nominal_mv_, 64), supply_mv)));
+      mul_i16(nominal_q4, static_cast<int16_t>(quotient_u16(
+                              static_cast<uint32_t>(board().motor_nominal_mv) * 64, supply_mv)));
   // kp/16 duty per mm/s on an error in 0.1 mm/s: kp e / 160 = kp e 102 / 2^14.
   const int32_t proportional = asr(mul_i16(parameters_.speed_kp(), error) * 102, 14);
   // The target is within the full speed: this is 800 at most, the proportional part 5976.

@@ -11,13 +11,13 @@
 #include <stdint.h>
 
 #include "firmware/control/kinematics.h"
-#include "firmware/parameters/board_constants.h"
 #include "firmware/parameters/kept.h"
+#include "firmware/parameters/own_board.h"
 #include "firmware/parameters/parameters.h"
 
 namespace screed {
 
-class TrackSpeedControl {
+class TrackSpeedControl : private OwnBoard {
  public:
   TrackSpeedControl(const BoardConstants& board, const Parameters& parameters);
 
@@ -52,15 +52,14 @@ class TrackSpeedControl {
     Control control;
   };
 
+  /// Duty per mm/s at the nominal voltage.
+  int16_t feed_forward_q8() const;
   void observe(int16_t counts);
   /// The target as the observer would show it, 0.1 mm/s.
   int32_t expect(int16_t target_mm_per_s);
 
   State state_{};
-  uint16_t count_um_q4_;
-  uint16_t nominal_mv_;
   Kept<Parameters> parameters_;
-  int16_t feed_forward_q8_;  ///< duty per mm/s at the nominal voltage
 };
 
 }  // namespace screed
