@@ -35,7 +35,7 @@ SCREED_OUT_OF_LINE int16_t approach(int16_t value, int16_t target, int16_t step)
 }  // namespace
 
 DriveControl::DriveControl(const BoardConstants& board, const Parameters& parameters)
-    : full_speed_mm_per_s_(static_cast<int16_t>(board.full_speed_mm_per_s)),
+    : OwnBoard(board),
       parameters_(parameters),
       kinematics_(board.tread_mm),
       left_(board, parameters),
@@ -80,7 +80,7 @@ DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurem
   } else {
     wanted =
         kinematics_.tracks(command.speed_mm_per_s, corrected_yaw_rate(command, measured.yaw_rate),
-                           full_speed_mm_per_s_);
+                           static_cast<int16_t>(board().full_speed_mm_per_s));
   }
   // Rounded up: the least limit still moves.
   const int16_t step = at_once

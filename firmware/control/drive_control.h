@@ -12,6 +12,7 @@
 #include "firmware/control/kinematics.h"
 #include "firmware/control/track_speed_control.h"
 #include "firmware/parameters/kept.h"
+#include "firmware/parameters/own_board.h"
 
 namespace screed {
 
@@ -27,7 +28,7 @@ struct DriveOutput {
   int16_t duty_right;
 };
 
-class DriveControl {
+class DriveControl : private OwnBoard {
  public:
   DriveControl(const BoardConstants& board, const Parameters& parameters);
 
@@ -65,7 +66,6 @@ class DriveControl {
   int32_t corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate);
 
   State state_{};
-  int16_t full_speed_mm_per_s_;
   Kept<Parameters> parameters_;
   SkidSteer kinematics_;
   TrackSpeedControl left_;
