@@ -35,11 +35,7 @@ SCREED_OUT_OF_LINE int16_t approach(int16_t value, int16_t target, int16_t step)
 }  // namespace
 
 DriveControl::DriveControl(const BoardConstants& board, const Parameters& parameters)
-    : OwnBoard(board),
-      parameters_(parameters),
-      kinematics_(board.tread_mm),
-      left_(board, parameters),
-      right_(left_) {}
+    : OwnBoard(board), parameters_(parameters), left_(board, parameters), right_(left_) {}
 
 void DriveControl::idle(const DriveMeasurement& measured) {
   state_ = {};
@@ -78,9 +74,9 @@ DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurem
   if (command.speed_mm_per_s == 0 && command.yaw_rate == 0) {
     forget_yaw();
   } else {
-    wanted =
-        kinematics_.tracks(command.speed_mm_per_s, corrected_yaw_rate(command, measured.yaw_rate),
-                           static_cast<int16_t>(board().full_speed_mm_per_s));
+    wanted = SkidSteer(board().tread_mm)
+                 .tracks(command.speed_mm_per_s, corrected_yaw_rate(command, measured.yaw_rate),
+                         static_cast<int16_t>(board().full_speed_mm_per_s));
   }
   // Rounded up: the least limit still moves.
   const int16_t step = at_once

@@ -67,7 +67,6 @@ class DriveControl : private OwnBoard {
 
   State state_{};
   Kept<Parameters> parameters_;
-  SkidSteer kinematics_;
   TrackSpeedControl left_;
   TrackSpeedControl right_;
 };
