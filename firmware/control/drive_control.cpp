@@ -28,8 +28,8 @@ constexpr uint8_t kYawLag = 4;
 constexpr int16_t kYawErrorLimit = 16000;
 
 /// Of speeds, whose difference fits 16 bits.
-SCREED_OUT_OF_LINE int16_t approach(int16_t value, int16_t target, int16_t step) {
-  return static_cast<int16_t>(value + limit_i16(static_cast<int16_t>(target - value), step));
+SCREED_OUT_OF_LINE void approach(int16_t& value, int16_t target, int16_t step) {
+  value = static_cast<int16_t>(value + limit_i16(static_cast<int16_t>(target - value), step));
 }
 
 }  // namespace
@@ -84,8 +84,8 @@ DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurem
                            : static_cast<int16_t>(static_cast<uint16_t>(parameters_.accel_limit() +
                                                                         kTickRate_hz - 1) /
                                                   static_cast<uint16_t>(kTickRate_hz));
-  state_.targets.left = approach(state_.targets.left, wanted.left, step);
-  state_.targets.right = approach(state_.targets.right, wanted.right, step);
+  approach(state_.targets.left, wanted.left, step);
+  approach(state_.targets.right, wanted.right, step);
   return {left_.tick(state_.targets.left, measured.counts_left, measured.battery_mv),
           right_.tick(state_.targets.right, measured.counts_right, measured.battery_mv)};
 }
