@@ -3,7 +3,7 @@
 #   build/firmware/<board>/screed.elf and .hex, and their budget of flash, RAM, stack and cycles
 #   build/firmware/<board>_usb_core/ the same with USB=core: on the Arduino core's main() and USB instead of hal/avr/usb
 #   build/firmware/<board>_node_3/ the same with NODE=3: of the robot that is node 3 on the radio
-#   build/firmware/<board>_strokes/ the same with LEVELING=strokes: its default algorithm is strokes
+#   build/firmware/<board>_strokes/ the same with LEVELING=strokes: that is its default algorithm
 #
 # Needs options.mk and host.mk. A board is a folder boards/<board> with board.h, pins.h and board.mk (docs/boards.md).
 
@@ -18,11 +18,11 @@ AVR_SIZE ?= avr-size
 AVR_NM ?= avr-nm
 
 # Most flash and RAM a program may use, and what of it must stay free; RAM counts variables and the worst-case stack.
-# With LEVELING half of that of flash, with USB=core none.
+# With USB=core none of flash.
 FLASH_BUDGET := 28672
 RAM_BUDGET := 2560
 RAM_SPARE := 256
-FLASH_SPARE_own := $(if $(LEVELING),1024,2048)
+FLASH_SPARE_own := 2048
 FLASH_SPARE_core := 0
 # Where the core writes the bootloader's key while the program still runs (MAGIC_KEY_POS in its USBCore.h).
 BOOT_KEY_ADDRESS := 0x0800
@@ -130,8 +130,7 @@ firmware-algorithms: $(FIRMWARE_ELF)
 	    od -An -tu2) ; \
 	  has="" ; for it in $(ALGORITHM_NUMBERS) ; do [ $$(( bits >> $${it#*=} & 1 )) -eq 0 ] || has="$$has $${it%=*}" ; \
 	  done ; \
-	  echo "leveling algorithms       $${has# }" ; \
-	  case "$$has" in *strokes*) ;; *) echo "  strokes, which levels best, is in the image of LEVELING=strokes" ;; esac
+	  echo "leveling algorithms       $${has# }"
 
 # Bytes of each module; longest tick and interrupts, measured in the simulator while the robot drives.
 size:  ## flash by modules, RAM, stack, longest tick of that image, their reserve
@@ -227,11 +226,4 @@ OTHER_NODE_IMAGE := $(FIRMWARE_BUILD)_node_3/screed.elf
 TEST_IMAGES += $(OTHER_NODE_IMAGE)
 $(OTHER_NODE_IMAGE): FORCE
 	+@$(MAKE) --no-print-directory BUILD=$(BUILD) BUILD_ROOT=$(BUILD_ROOT) NODE=3 $@
-endif
-# And that of the algorithm that levels best.
-ifndef LEVELING
-STROKES_IMAGE := $(FIRMWARE_BUILD)_strokes/screed.elf
-TEST_IMAGES += $(STROKES_IMAGE)
-$(STROKES_IMAGE): FORCE
-	+@$(MAKE) --no-print-directory BUILD=$(BUILD) BUILD_ROOT=$(BUILD_ROOT) LEVELING=strokes $@
 endif

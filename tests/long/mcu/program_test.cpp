@@ -39,11 +39,10 @@ TEST_F(McuProgram, ParityOfAShortHillSensing) {
   EXPECT_GT(json["real_time_factor"], 0.0);
 }
 
-// The image with the algorithm that levels best, on the bed that `make sim` drives.
-TEST_F(McuProgram, TheImageWithStrokesLevelsAsTheFirmwareHere) {
+// With the algorithm that levels best, on the bed that `make sim` drives.
+TEST_F(McuProgram, TheImageLevelsAsTheFirmwareHere) {
   const std::string bed = std::string("'") + kDataFolder + "/experiments/level_bed.ini' --json";
-  const std::string strokes = std::string(" --elf '") + kStrokesImage + "'";
-  const Result parity = run("parity " + bed + strokes + " --minutes 2");
+  const Result parity = run("parity " + bed + image() + " --minutes 2");
   ASSERT_EQ(parity.exit_code, 0) << parity.err;
   const auto compared = Json::parse(parity.out);
   EXPECT_EQ(compared["differing_bytes"], 0) << compared["first_difference"];
@@ -52,7 +51,7 @@ TEST_F(McuProgram, TheImageWithStrokesLevelsAsTheFirmwareHere) {
   // On its own the image reads the sensors at times of its own, and drives another course.
   const std::string five_minutes = "sim " + bed + " --no-pictures --duration 300";
   const std::string here = five_minutes + " --hal native --out native";
-  const std::string on_image = five_minutes + " --hal mcu --out mcu" + strokes;
+  const std::string on_image = five_minutes + " --hal mcu --out mcu" + image();
   for (const std::string& command : {here, on_image}) {
     const Result run_of = run(command);
     ASSERT_EQ(run_of.exit_code, 0) << run_of.err;
@@ -179,11 +178,11 @@ TEST_F(McuProgram, SaysWhatIsMissing) {
   refused("parity " + first_drive() + " --board unheard_of", kDefaultBoard);
   // Of the image, before anything runs: what it lacks, what it has, and the cure.
   const std::string lacks =
-      "the image has no algorithm strokes, only drive, hill_sensing, "
-      "spin_on_peak, random_walk, coverage; make firmware LEVELING=strokes";
-  const std::string strokes = first_drive() + image() + " --set experiment.algorithm=strokes";
-  refused("sim --hal mcu " + strokes, lacks);
-  refused("parity " + strokes, lacks);
+      "the image has no algorithm peak_memory, only drive, hill_sensing, "
+      "spin_on_peak, random_walk, coverage, strokes; make firmware LEVELING=peak_memory";
+  const std::string missing = first_drive() + image() + " --set experiment.algorithm=peak_memory";
+  refused("sim --hal mcu " + missing, lacks);
+  refused("parity " + missing, lacks);
 }
 
 TEST_F(McuProgram, StopsWhileParticlesAreLaid) {
