@@ -29,9 +29,7 @@ Strokes::Strokes(const Parameters& parameters)
     : parameters_(parameters),
       random_(static_cast<uint16_t>(parameters.random_seed())),
       map_(parameters),
-      limit_(kFirstLimit),
-      down_ticks_(static_cast<uint8_t>(ticks_from_ms(parameters.stroke_down()))),
-      up_ticks_(static_cast<uint8_t>(ticks_from_ms(parameters.stroke_up()))) {
+      limit_(kFirstLimit) {
   begin_journey();
 }
 
@@ -50,7 +48,8 @@ void Strokes::begin(Phase phase, uint16_t ticks) {
 }
 
 void Strokes::begin_cycle() {
-  state_.cycle_ticks = static_cast<uint8_t>(down_ticks_ + up_ticks_);
+  state_.cycle_ticks = static_cast<uint8_t>(ticks_from_ms(parameters_.stroke_down()) +
+                                            ticks_from_ms(parameters_.stroke_up()));
 }
 
 void Strokes::begin_journey() {
@@ -105,7 +104,7 @@ MotionCommand Strokes::stroke(Behaviour& behaviour) {
     begin_cycle();
   }
   --state_.cycle_ticks;
-  if (state_.cycle_ticks < up_ticks_) {
+  if (state_.cycle_ticks < ticks_from_ms(parameters_.stroke_up())) {
     state_.speed = kSpeed_mm_per_s;
   } else {
     state_.speed =

@@ -61,8 +61,6 @@ class Strokes : public AlgorithmDefaults {
   Random random_;
   FlowMap map_;
   int16_t limit_;
-  uint8_t down_ticks_;
-  uint8_t up_ticks_;
 };
 
 }  // namespace screed
