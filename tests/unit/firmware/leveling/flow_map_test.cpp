@@ -148,8 +148,8 @@ TEST_F(FlowMapLearns, TheSlopeThatItFeelsCountsAQuarter) {
   settle(input);
   int16_t from[2];
   map_.source(input, from);
-  EXPECT_NEAR(from[0], input.pitch / 4, 6);  // short of it by what the lag leaves
-  EXPECT_NEAR(from[1], input.roll / 4, 6);
+  EXPECT_NEAR(from[0], input.pitch / 4.0, 6.0);  // short of it by what the lag leaves
+  EXPECT_NEAR(from[1], input.roll / 4.0, 6.0);
 }
 
 TEST_F(FlowMapLearns, NothingWhileItIsNotSteady) {
