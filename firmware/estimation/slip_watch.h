@@ -84,14 +84,14 @@ class SlipWatch {
   };
   struct State {
     int32_t mean;  // of what enters velocity_loss when nothing slips: bias, error of the pitch; Q9
-    int16_t lost;              // speed lost in a few ticks, in the same unit
-    uint8_t collision_ticks;   // left until a collision is long ago
-    uint16_t faster_track;     // track's speed, 0.1 mm/s
-    int16_t yaw_rate;          // smoothed, a quarter
-    int16_t effort;            // smoothed over 8 ticks, Q3 duty
-    int16_t half_speed;        // of the belts in the tick before, half of 0.1 mm/s
-    uint16_t evidence;         // mean of the output "held", 0..65535
-    Vibration vibration[3];    // pitch rate, specific force ahead, up
+    int16_t lost;  // speed lost in a few ticks, in the same unit
+    uint8_t collision_ticks;  // left until a collision is long ago
+    uint16_t faster_track;    // track's speed, 0.1 mm/s
+    int16_t yaw_rate;         // smoothed, a quarter
+    int16_t effort;           // smoothed over 8 ticks, Q3 duty
+    int16_t half_speed;       // of the belts in the tick before, half of 0.1 mm/s
+    uint16_t evidence;        // mean of the output "held", 0..65535
+    Vibration vibration[3];   // pitch rate, specific force ahead, up
     bool stuck;
     bool half_done;  // of a step of the network
     uint8_t travel_share;
