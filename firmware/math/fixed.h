@@ -155,9 +155,9 @@ SCREED_OUT_OF_LINE inline int32_t scale_q16(int32_t a, int16_t k) {
   // 70: it calls its 16 x 16 multiplication twice and saves a dozen registers for that. Unsigned
   // partial products of bytes, added at their places from 2^8 up; then the two sign corrections,
   // each modulo 2^48.
-  int32_t result;
-  uint8_t fraction;
-  uint8_t zero;
+  int32_t result = 0;
+  uint8_t fraction = 0;
+  uint8_t zero = 0;
   asm("clr %[zero]\n\t"
       "mul %A[a], %A[k]\n\t"  // 2^0: only the upper byte matters
       "mov %[fraction], r1\n\t"
