@@ -49,9 +49,10 @@ TEST_F(McuProgram, TheImageLevelsAsTheFirmwareHere) {
   EXPECT_GE(compared["driving_ticks"], 11000);
 
   // On its own the image reads the sensors at times of its own, and drives another course.
-  const std::string five_minutes = "sim " + bed + " --no-pictures --duration 300";
-  const std::string here = five_minutes + " --hal native --out native";
-  const std::string on_image = five_minutes + " --hal mcu --out mcu" + image();
+  // It learns the site first: ten minutes.
+  const std::string ten_minutes = "sim " + bed + " --no-pictures --duration 600";
+  const std::string here = ten_minutes + " --hal native --out native";
+  const std::string on_image = ten_minutes + " --hal mcu --out mcu" + image();
   for (const std::string& command : {here, on_image}) {
     const Result run_of = run(command);
     ASSERT_EQ(run_of.exit_code, 0) << run_of.err;
