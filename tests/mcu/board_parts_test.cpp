@@ -102,6 +102,9 @@ TEST_F(BoardParts, EntersTheBootloaderWhenTheLineIsClosedAt1200Baud) {
   EXPECT_EQ(mcu_.word(0x0800), 0x7777);
   usb_.run_ms(180);
   EXPECT_EQ(mcu_.starts(), 2);
+  // Variables lie where the key does, the mark of the cause elsewhere.
+  open_console();
+  EXPECT_EQ(cause(), static_cast<int>(ResetCause::kUpload));
 }
 
 TEST_F(BoardParts, KeepsItsTickWhileAHostDoesNotFetch) {

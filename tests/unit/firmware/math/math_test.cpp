@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "firmware/math/fixed.h"
 #include "firmware/math/quaternion.h"
@@ -111,6 +112,20 @@ TEST(Trig, Atan2OfEveryAngleAtManyLengths) {
           std::atan2(static_cast<long double>(y), static_cast<long double>(x)) * 32768.0L / kPi;
       ASSERT_LE(std::fabs(std::remainder(atan2_angle(y, x) - exact, 65536.0L)), 1.0L)
           << y << ", " << x;
+    }
+  }
+}
+
+TEST(Trig, AVectorTurnsByAnyAngleAndKeepsItsLength) {
+  for (int angle = -32768; angle <= 32767; angle += 37) {
+    const double turn = angle * std::numbers::pi / 32768.0;
+    for (const auto& [x, y] : {std::pair<int, int>{100, 0}, {-7000, 12000}, {-32000, -5}, {1, 1}}) {
+      std::int16_t vector[2] = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
+      turn_vector(vector, static_cast<Angle>(angle));
+      // Sine and cosine are off by 2^-15, sums are rounded down.
+      const double off = 1.0 + std::hypot(x, y) / 16384.0;
+      ASSERT_NEAR(vector[0], x * std::cos(turn) - y * std::sin(turn), off) << angle;
+      ASSERT_NEAR(vector[1], x * std::sin(turn) + y * std::cos(turn), off) << angle;
     }
   }
 }
