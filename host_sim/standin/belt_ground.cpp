@@ -269,7 +269,7 @@ void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::siz
   const Eigen::Vector2d fall = -(plane.forward * forward + plane.left * left);
   const Eigen::Vector2d downhill = shear.length_m / std::max(tan_repose_, fall.norm()) * fall;
   const Eigen::Vector2d dragged = shear.forward_m * forward + shear.left_m * left;
-  patch.carried = layer * cells * (fit_.downhill * downhill - soil_.slip_carry * dragged);
+  patch.carried = layer * cells * (downhill - soil_.slip_carry * dragged);
   const Eigen::Vector2d past = 2.0 * (patch.half_length * shear.forward_m * forward +
                                       patch.half_width * shear.left_m * left);
   patch.carried -= soil_.slip_carry * thrown_ / shear.length_m * past;

@@ -1,4 +1,4 @@
-// What the stand-in's closed forms do not say by themselves: five numbers, the same for all soils,
+// What the stand-in's closed forms do not say by themselves: four numbers, the same for all soils,
 // chosen on drives in the physics (docs/standin.md).
 #pragma once
 
@@ -21,8 +21,6 @@ struct BeltFit {
   double unloading = 10.0;
   /// Of the volume that slip digs, over that of the soil's law.
   double digging = 1.15;
-  /// Of the way that a slope carries what is dug, over that of the soil's law.
-  double downhill = 0.7;
 };
 
 // How a robot on two belts moves over soil, in closed form: a planar body, and soil that shears
@@ -110,12 +108,12 @@ class BeltMotion {
     BothBelts left = BothBelts::Zero();
     BothBelts slip = BothBelts::Zero();      // in the last frame, m/s
     BothBelts strength = BothBelts::Zero();  // in this frame, N
-    BothBelts per_slip = BothBelts::Zero();  // mobilised in this frame by its slip, 1/m
+    BothBelts kept = BothBelts::Zero();      // of what was mobilised before this frame
   };
   struct System;
 
   void carry(const BeltSupport& support);
-  void shear(const BeltSupport& support, System& system);
+  void shear(const BeltSupport& support, const Eigen::Vector3d& motion, System& system);
   void finish();
 
   BeltFit fit_;

@@ -149,6 +149,27 @@ TEST_F(BeltMotionTest, ReversesWithoutUnwindingItsSlip) {
   EXPECT_LT(way, 4.0 * soil.shear_modulus_m);
 }
 
+// A stroke that is caught: the belt already runs ahead while the robot still comes back. It slips
+// by many times K, so the soil holds with its whole strength until both are as fast.
+TEST_F(BeltMotionTest, HoldsWithItsWholeStrengthWhileItSlipsLess) {
+  const SoilParameters gravel = soil_preset("gravel");  // K = 1.7 mm, without cohesion
+  BeltFit fit;
+  fit.rolling = 0.0;
+  BeltMotion caught(tracks, gravel, fit);
+  caught.set_motion({-0.28 * kFrame_s, 0.0, 0.0}, level_support(tracks));
+  const auto speed = [&] {
+    return caught.step(0.27, 0.27, level_support(tracks)).forward_m / kFrame_s;
+  };
+  speed();
+  const double friction = std::tan(gravel.friction_deg * std::numbers::pi / 180.0);
+  double before = speed();
+  while (before < 0.15) {
+    const double after = speed();
+    EXPECT_NEAR((after - before) / kFrame_s, kGravity_m_per_s2 * friction, 0.1) << before;
+    before = after;
+  }
+}
+
 // Where a belt slips evenly, what is mobilised below a patch is Janosi and Hanamoto's of the way
 // from the leading end to its middle.
 TEST_F(BeltMotionTest, IsExactWhereABeltSlipsEvenly) {
