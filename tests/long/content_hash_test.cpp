@@ -20,7 +20,7 @@ struct KnownRun {
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "c7ef0c7892589ffade2ded7cbe9c4b99"},
     {"soft_bed", "--duration 6", "f5d09e0aca52a25580de863664447acd"},
-    {"soft_bed", "--hal surrogate --duration 10", "b10299ebe7546883e7489ccd9444e696"},
+    {"soft_bed", "--hal surrogate --duration 10", "c31c79a082cb1325547add4abd2c8da3"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.slip_layer=0.002 --duration 4",
