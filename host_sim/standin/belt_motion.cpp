@@ -174,8 +174,8 @@ void BeltMotion::carry(const BeltSupport& support) {
 /// comes from `motion`.
 void BeltMotion::shear(const BeltSupport& support, const Eigen::Vector3d& motion, System& system) {
   const double weight = weight_on(support, mass_kg_);
-  const BothBelts belts = motion[0] - motion[2] * middle_;  // speed of the robot there
-  const BothBelts along_slip = speeds_ - belts;
+  const BothBelts travel = motion[0] - motion[2] * middle_;  // of the robot at each belt, m/s
+  const BothBelts along_slip = speeds_ - travel;
   const BothBelts filled = both(support.filled);
   BothBelts load = BothBelts::Zero();
   BothBelts forward = BothBelts::Zero();  // forces times the frame
@@ -204,7 +204,7 @@ void BeltMotion::shear(const BeltSupport& support, const Eigen::Vector3d& motion
     system.left_turn += ks * patch.x;
     system.turn += ks * patch.x * patch.x;
   }
-  forward -= kTick_s * fit_.rolling * load * (belts / kRollingSpeed_m_per_s).max(-1.0).min(1.0);
+  forward -= kTick_s * fit_.rolling * load * (travel / kRollingSpeed_m_per_s).max(-1.0).min(1.0);
   system.add(forward.sum(), 0.0, -(forward * middle_).sum());
   system.forward += stiffness.sum();
   system.forward_turn -= (stiffness * middle_).sum();
