@@ -15,14 +15,15 @@ namespace screed {
 
 namespace {
 constexpr double kRollingSpeed_m_per_s = 0.01;  // at which rolling resists in full
+constexpr double kMinContact_m = 0.002;         // of a patch: what touches less is as much
+constexpr double kMinCarrying_per_s = 1e-12;    // of a belt that stands
+constexpr double kTouching_m = 1e-9;            // what touches less does not
+constexpr double kMinSpeed_m_per_s = 1e-12;     // of a belt that goes somewhere
+
 // What wears off goes by the slip at the end of the frame, which is found by going over it again.
 // By the slip at its begin, soil with K = 1.7 mm would hold a seventh less than it does while a
 // stroke is caught.
 constexpr int kPasses = 3;
-constexpr double kMinContact_m = 0.002;       // of a patch: what touches less is as much
-constexpr double kMinCarrying_per_s = 1e-12;  // of a belt that stands
-constexpr double kTouching_m = 1e-9;          // what touches less does not
-constexpr double kMinSpeed_m_per_s = 1e-12;   // of a belt that goes somewhere
 
 double along_slope(double slope) {
   return std::sqrt(1.0 + slope * slope);

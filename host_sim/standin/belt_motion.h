@@ -108,7 +108,7 @@ class BeltMotion {
     BothBelts left = BothBelts::Zero();
     BothBelts slip = BothBelts::Zero();      // in the last frame, m/s
     BothBelts strength = BothBelts::Zero();  // in this frame, N
-    BothBelts kept = BothBelts::Zero();      // of what was mobilised before this frame
+    BothBelts kept = BothBelts::Zero();      // share of what was mobilised before
   };
   struct System;
 
