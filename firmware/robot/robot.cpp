@@ -341,7 +341,7 @@ void Robot::watch_slip(const SensorSample& sample) {
 }
 
 // Stuck after a collision it stands at a wall, if there is one. It may climb it instead, the tracks
-// gripping it, until it tips over.
+// gripping it, until it tips over. What stops its escape is the hole it stands in.
 void Robot::feel_walls() {
   bool stuck = slip_watch_.stuck();
   bool felt = slip_watch_.collided();
@@ -349,7 +349,7 @@ void Robot::feel_walls() {
     stuck = true;
     felt = true;
   }
-  if (stuck && !state_.stuck) {
+  if (stuck && !state_.stuck && leveling_.state() != LevelingState::kEscape) {
     Angle travel = state_.status.angles.heading;
     // Half a turn is the upper bit.
     if (state_.status.motion.speed_mm_per_s < 0) travel = static_cast<Angle>(travel ^ INT16_MIN);

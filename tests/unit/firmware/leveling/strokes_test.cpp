@@ -425,6 +425,15 @@ TEST_F(StrokesHeld, ARowEndsNearTheEdge) {
   }
 }
 
+// Where a wall is ahead it would dig itself in, working at one place again and again.
+TEST_F(StrokesHeld, FromTheEdgeItTravelsForTwoSecondsToAnotherPlace) {
+  input_.place.mm[kX] = kHalf_mm - 114;
+  lean(20.0, 0.0);
+  ASSERT_LT(ticks_until_it_strokes(), 100);
+  ticks_of_the_work();
+  EXPECT_NEAR(ticks_until_it_strokes(), 2 * kTickRate_hz, 2);
+}
+
 TEST_F(StrokesHeld, AnEscapeEndsTheWorkAndAJourneyBegins) {
   lean(20.0, 0.0);
   ticks_until_it_strokes();

@@ -592,6 +592,16 @@ TEST(WallSearch, ARobotThatClimbsTheWallItSeeksTakesItForFoundAndBacksOff) {
   }
 }
 
+// Its own escape from a hole is no collision: it would believe itself at the wall behind it.
+TEST(WallSearch, WhatStopsAnEscapeIsNoWall) {
+  WallSeeker robot;
+  for (const double degrees : {35.0, -35.0, 35.0}) robot.raise_nose(degrees);
+  ASSERT_EQ(robot.robot.leveling().state(), LevelingState::kEscape);
+  Place place{};
+  robot.robot.position().get(place);
+  EXPECT_LT(std::max(place.sigma[kX], place.sigma[kY]), 128) << "a wall that cannot be makes doubt";
+}
+
 // Dead reckoning that runs on beyond the walls would take minutes of driving back to be right
 // again.
 TEST(WallSearch, NoRobotBelievesItselfBeyondAWall) {
