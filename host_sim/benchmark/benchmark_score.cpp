@@ -182,7 +182,7 @@ struct Pair {
   std::size_t other;
 };
 
-using Change = std::vector<double>;  // of relief, by run
+using Change = std::vector<double>;  // of the height about level, by run
 
 std::vector<Pair> pairs_of(const CampaignPlan& plan, const std::string& reference,
                            const std::string& other) {
@@ -290,8 +290,8 @@ WorldRanking ranking_of(const CampaignPlan& plan, const Change& change,
 
 std::vector<WorldRanking> rank_worlds(const CampaignPlan& plan, const ValueTable& runs) {
   if (plan.factors.empty() || plan.factors.front().heading != kWorldFactor) return {};
-  const std::vector<double> before = runs.numbers("terrain_before.relief_m");
-  const std::vector<double> after = runs.numbers("terrain_after.relief_m");
+  const std::vector<double> before = runs.numbers("terrain_before.level_deviation_m");
+  const std::vector<double> after = runs.numbers("terrain_after.level_deviation_m");
   Change change(plan.run_count());
   for (std::size_t run = 0; run < change.size(); ++run) {
     change[run] = after.at(run) / before.at(run) - 1.0;

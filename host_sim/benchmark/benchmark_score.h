@@ -55,15 +55,15 @@ std::vector<CourseScore> score_benchmark(const CampaignPlan& plan, const ValueTa
 // Whether another world orders the entries of the leveling benchmark as the physics does, and how
 // far their rates agree: the benchmark's runs, course by course, in both worlds on the same beds.
 
-/// One entry's change of relief in both worlds.
+/// One entry's change of the height about level in both worlds.
 struct RankedEntry {
   std::string entry;
   SeedMean reference;
   SeedMean other;
 };
 
-/// Kendall's tau of the entries' mean changes of relief. Its interval is the bootstrap's over the
-/// beds: what it says of other beds.
+/// Kendall's tau of the entries' mean changes of the height about level. Its interval is the
+/// bootstrap's over the beds: what it says of other beds.
 struct WorldRanking {
   std::string reference;  ///< level of kWorldFactor: the suite's first
   std::string other;

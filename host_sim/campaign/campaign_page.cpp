@@ -23,8 +23,8 @@ namespace screed {
 namespace {
 
 /// The first of them that a campaign has is shown first.
-constexpr std::array<const char*, 2> kFirstMetrics = {"leveling.progress",
-                                                      "terrain_after.relief_m"};
+constexpr std::array<const char*, 2> kFirstMetrics = {"terrain_after.level_deviation_m",
+                                                      "leveling.progress"};
 /// What is known before a run and is no metric of it.
 constexpr std::array<std::string_view, 5> kIdentity = {"run", "id", "cell", "seed", "status"};
 

@@ -105,8 +105,8 @@ std::vector<FactorLevel> levels_of(const std::vector<std::vector<std::string>>& 
 
 namespace {
 
-constexpr std::array<const char*, 5> kShown = {"progress", "relief", "roughness",
-                                               "robot_scale_flatness", "stuck"};
+constexpr std::array<const char*, 5> kShown = {"level_deviation", "progress", "relief", "roughness",
+                                               "stuck"};
 
 /// One figure of one run over time: where it was measured, times rising.
 using RunCurve = std::vector<std::pair<double, double>>;

@@ -134,7 +134,7 @@ void print_ranking(const WorldRanking& ranking) {
     print("  ({} itself, a half of the beds beside the other: {:.2f})\n", ranking.reference,
           ranking.reference_halves);
   if (ranking.course.empty()) return;
-  print("  {:-16s} {:-26s} {:-26s} {}\n", "entry, relief [%]", ranking.reference, ranking.other,
+  print("  {:-16s} {:-26s} {:-26s} {}\n", "entry, height [%]", ranking.reference, ranking.other,
         "rate");
   for (const RankedEntry& entry : ranking.entries)
     print("  {:-16s} {:-26s} {:-26s} {}\n", entry.entry, percent(entry.reference),

@@ -193,7 +193,8 @@ void add_leveling(Rows& rows, const Status::Leveling& before, const Status::Leve
   rows.heading(kDetail, "AT ROBOT SCALE", "start", "now");
   const auto millimetres = [](double metres) { return number_text(metres * 1e3, 1) + " mm"; };
   const auto percent = [](double share) { return number_text(share * 100.0, 1) + " %"; };
-  rows.figure(kDetail, "relief", millimetres(now.relief_m), millimetres(before.relief_m));
+  rows.figure(kDetail, "about level", millimetres(now.level_deviation_m),
+              millimetres(before.level_deviation_m));
   rows.figure(kSpare, "roughness", millimetres(now.roughness_m), millimetres(before.roughness_m));
   rows.figure(kDetail, "flat", percent(now.flat), percent(before.flat));
   if (now.progress) rows.figure(kDetail, "progress", percent(*now.progress));

@@ -76,7 +76,7 @@ struct Status {
 
   /// Of points of the leveling curve.
   struct Leveling {
-    double relief_m = 0.0;
+    double level_deviation_m = 0.0;  ///< RMS of the heights about level
     double roughness_m = 0.0;
     double flat = 0.0;               ///< share of cells flat at robot scale, 0..1
     std::optional<double> progress;  ///< the last one measured

@@ -179,7 +179,8 @@ void ViewerDisplay::show_leveling() {
   for (const LevelingPoint& point : leveling_) {
     if (point.time > status_.time_s) break;
     if (std::isfinite(point.progress)) progress = point.progress;
-    status_.leveling_now = {point.relief, point.roughness, point.robot_scale_flatness, progress};
+    status_.leveling_now = {point.level_deviation, point.roughness, point.robot_scale_flatness,
+                            progress};
     if (!status_.leveling_before.has_value()) status_.leveling_before = status_.leveling_now;
   }
 }

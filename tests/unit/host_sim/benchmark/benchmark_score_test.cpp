@@ -199,14 +199,14 @@ CampaignPlan plan_of_worlds(const std::vector<std::string>& worlds) {
   return plan;
 }
 
-/// Changes of relief by cell, the same on all beds.
+/// Changes of the height about level by cell, the same on all beds.
 ValueTable runs_with(const std::vector<double>& changes) {
   ValueTable table;
   for (const double change : changes) {
     for (int seed = 0; seed < kSeeds; ++seed) {
       table.add_row();
-      table.set("terrain_before.relief_m", 0.01 * (seed + 1));
-      table.set("terrain_after.relief_m", 0.01 * (seed + 1) * (1.0 + change));
+      table.set("terrain_before.level_deviation_m", 0.01 * (seed + 1));
+      table.set("terrain_after.level_deviation_m", 0.01 * (seed + 1) * (1.0 + change));
     }
   }
   return table;
@@ -248,8 +248,8 @@ TEST(WorldRanking, SaysHowWellTheReferenceRepeatsItself) {
   ValueTable swapped;
   const auto add = [&](double change) {
     swapped.add_row();
-    swapped.set("terrain_before.relief_m", 0.01);
-    swapped.set("terrain_after.relief_m", 0.01 * (1.0 + change));
+    swapped.set("terrain_before.level_deviation_m", 0.01);
+    swapped.set("terrain_after.level_deviation_m", 0.01 * (1.0 + change));
   };
   for (int cell = 0; cell < 12; ++cell) {
     for (std::size_t bed = 0; bed < 4; ++bed) {
@@ -268,7 +268,7 @@ TEST(WorldRanking, SaysHowWellTheReferenceRepeatsItself) {
 TEST(WorldRanking, LeavesOutBedsWithoutAValue) {
   ValueTable table = runs_with({-0.1, -0.2, -0.5, -0.01, -0.02, -0.03,  //
                                 -0.1, -0.3, -0.4, -0.01, -0.02, -0.03});
-  table.set("terrain_after.relief_m", nullptr);  // of the last run
+  table.set("terrain_after.level_deviation_m", nullptr);  // of the last run
   const auto rankings = rank_worlds(plan_of_worlds({"physics", "stand_in"}), table);
   EXPECT_EQ(rankings[0].tau.count, 4U);
   EXPECT_EQ(rankings[1].tau.count, 3U);

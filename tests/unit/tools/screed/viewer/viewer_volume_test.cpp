@@ -65,8 +65,9 @@ class ViewerVolume : public ::testing::Test {
     EXPECT_NEAR(shown.terrain.before.mean_deg, expected.before.heights.mean_slope_deg, 0.005);
     EXPECT_NEAR(shown.terrain.now.mean_deg, expected.after.heights.mean_slope_deg, 0.005);
     ASSERT_TRUE(shown.leveling_before.has_value() && shown.leveling_now.has_value());
-    EXPECT_EQ(shown.leveling_before->relief_m, expected.before.robot_scale.relief_m);
-    EXPECT_EQ(shown.leveling_now->relief_m, expected.after.robot_scale.relief_m);
+    EXPECT_EQ(shown.leveling_before->level_deviation_m,
+              expected.before.robot_scale.level_deviation_m);
+    EXPECT_EQ(shown.leveling_now->level_deviation_m, expected.after.robot_scale.level_deviation_m);
     EXPECT_EQ(shown.leveling_now->roughness_m, expected.after.robot_scale.roughness_m);
     EXPECT_EQ(shown.leveling_now->flat, expected.after.robot_scale.flatness);
     const double progress = summary.leveling.after.progress;
