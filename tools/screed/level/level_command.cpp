@@ -127,9 +127,13 @@ std::string rate_text(const RankedEntry& entry) {
 }
 
 void print_ranking(const WorldRanking& ranking) {
-  print("{}: {} orders the entries as {} with Kendall's tau {}, {} beds\n",
-        ranking.course.empty() ? "all courses" : name_list(ranking.course), ranking.other,
-        ranking.reference, with_interval(ranking.tau, 1, 2), ranking.tau.count);
+  const std::string course = ranking.course.empty() ? "all courses" : name_list(ranking.course);
+  if (std::isfinite(ranking.tau.mean))
+    print("{}: {} orders the entries as {} with Kendall's tau {}, {} beds\n", course, ranking.other,
+          ranking.reference, with_interval(ranking.tau, 1, 2), ranking.tau.count);
+  else  // one entry, or all alike
+    print("{}: {} beside {}, {} beds\n", course, ranking.other, ranking.reference,
+          ranking.tau.count);
   if (std::isfinite(ranking.reference_halves))
     print("  ({} itself, a half of the beds beside the other: {:.2f})\n", ranking.reference,
           ranking.reference_halves);
