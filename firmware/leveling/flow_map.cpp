@@ -65,7 +65,7 @@ void FlowMap::learn(const LevelingInput& input) {
   for (uint8_t axis = kX; axis <= kY; ++axis) {
     off[axis] = follow(known[axis], off[axis], kSlopeShift);
   }
-  turn_vector(off, static_cast<Angle>(-input.heading));
+  turn_vector_back(off, input.heading);
   for (uint8_t axis = kX; axis <= kY; ++axis) level_[axis] += mul_i16(off[axis], kLevelShare);
 }
 
@@ -100,7 +100,7 @@ void FlowMap::source(const LevelingInput& input, int16_t (&from)[2]) const {
     const Cell* behind = at[axis] == 0 ? here : here - step;
     from[axis] = difference(ahead->potential, behind->potential);
   }
-  turn_vector(from, static_cast<Angle>(-input.heading));
+  turn_vector_back(from, input.heading);
   for (uint8_t axis = kX; axis <= kY; ++axis) {
     from[axis] = sum(from[axis], asr_i16(uphill(axis), kFeltShift));
   }

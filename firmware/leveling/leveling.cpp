@@ -12,6 +12,9 @@ bool keeps_to_site(LevelingAlgorithm algorithm) {
   return false;
 }
 
+/// So near a wall its tracks or its hull may stand against it.
+constexpr int16_t kByWall_mm = 200;
+
 }  // namespace
 
 Leveling::Leveling(const Parameters& parameters)
@@ -33,9 +36,22 @@ void Leveling::take(const Parameters& parameters) {
 #undef SCREED_TAKE
 }
 
+bool Leveling::out_is_ahead(const LevelingInput& input) const {
+  for (uint8_t axis = kX; axis <= kY; ++axis) {
+    const int16_t wall = search_.wall(axis);
+    if (wall == 0 || static_cast<int16_t>(abs_i16(input.place.mm[axis])) < wall - kByWall_mm) {
+      continue;
+    }
+    int16_t place[2] = {input.place.mm[kX], input.place.mm[kY]};
+    turn_vector_back(place, input.heading);
+    return place[0] < 0;
+  }
+  return input.backwards;
+}
+
 MotionCommand Leveling::tick(const LevelingInput& input) {
   if (keeps_to_site(algorithm_)) {
-    if (escape_.tick(input.stuck, input.backwards, behaviour_.outside())) {
+    if (escape_.tick(input.stuck, out_is_ahead(input), behaviour_.outside())) {
       return behaviour_.enter_or_stay(LevelingState::kEscape, escape_.motion());
     }
     if (search_.update(input.place)) {

@@ -39,7 +39,7 @@ void Strokes::look(const LevelingInput& input) {
   map_.source(input, from);
   state_.from_ahead = from[0];
   state_.direction = atan2_angle(from[1], from[0]);
-  turn_vector(from, static_cast<Angle>(-state_.direction));
+  turn_vector_back(from, state_.direction);
   state_.flow = from[0];
 }
 

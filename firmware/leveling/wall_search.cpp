@@ -17,8 +17,7 @@ bool WallSearch::update(const Place& place) {
   lost_ = place.sigma[axis] > limit;
   gave_up_ = false;
   if (!lost_) return false;
-  const int16_t wall = (&parameters_.values[Parameters::k_site_x])[axis];
-  if (parameters_.lost_action() == 0 || wall == 0) {
+  if (parameters_.lost_action() == 0 || wall(axis) == 0) {
     gave_up_ = true;
     return false;
   }

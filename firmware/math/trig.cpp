@@ -102,4 +102,8 @@ SCREED_OUT_OF_LINE void turn_vector(int16_t (&vector)[2], Angle by) {
   vector[1] = static_cast<int16_t>(asr(mul_i16(x, s) + mul_i16(y, c), 15));
 }
 
+SCREED_OUT_OF_LINE void turn_vector_back(int16_t (&vector)[2], Angle by) {
+  turn_vector(vector, static_cast<Angle>(-by));
+}
+
 }  // namespace screed

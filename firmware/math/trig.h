@@ -37,5 +37,7 @@ Angle atan2_angle(int32_t y, int32_t x);
 
 /// Turns a vector counter-clockwise by an angle. Its length must be less than 2^15.
 void turn_vector(int16_t (&vector)[2], Angle by);
+/// Clockwise.
+void turn_vector_back(int16_t (&vector)[2], Angle by);
 
 }  // namespace screed

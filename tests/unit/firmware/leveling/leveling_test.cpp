@@ -280,6 +280,37 @@ TEST(Leveling, StuckOutsideTheSiteItBacksOffHalfAsFar) {
   EXPECT_EQ(ticks_backed_off(1001), 72);
 }
 
+// Strokes carry a robot against a wall whichever way it drove before: there, back may be the wall.
+TEST(Leveling, StuckByAWallItEscapesTowardsTheMiddle) {
+  const auto speed_of_escape = [](int16_t x_mm, int16_t y_mm, double heading_deg, bool backwards,
+                                  int16_t walls_mm) {
+    Parameters parameters = parameters_of(LevelingAlgorithm::kRandomWalk);
+    parameters.site_x() = walls_mm;
+    parameters.site_y() = walls_mm;
+    Leveling leveling(parameters);
+    leveling.start();
+    LevelingInput input{};
+    input.place.mm[kX] = x_mm;
+    input.place.mm[kY] = y_mm;
+    input.heading = degrees(heading_deg);
+    input.backwards = backwards;
+    input.stuck = true;
+    const MotionCommand motion = leveling.tick(input);
+    EXPECT_EQ(leveling.state(), LevelingState::kEscape);
+    return motion.speed_mm_per_s;
+  };
+  for (const bool backwards : {false, true}) {
+    EXPECT_GT(speed_of_escape(0, 620, -90.0, backwards, 750), 0) << "its tail at the wall";
+    EXPECT_LT(speed_of_escape(0, 620, 90.0, backwards, 750), 0);
+    EXPECT_GT(speed_of_escape(630, 620, -90.0, backwards, 750), 0) << "in a corner";
+    EXPECT_LT(speed_of_escape(-600, -100, 170.0, backwards, 750), 0);
+    // Not beside a wall, or without walls, it goes back where it came from.
+    const int sign = backwards ? 1 : -1;
+    EXPECT_GT(sign * speed_of_escape(0, 500, -90.0, backwards, 750), 0);
+    EXPECT_GT(sign * speed_of_escape(0, 620, -90.0, backwards, 0), 0);
+  }
+}
+
 TEST(Leveling, AClimbCutShortByTheFenceIsNoPeak) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kHillSensing);
   parameters.site_radius() = 1000;

@@ -126,6 +126,10 @@ TEST(Trig, AVectorTurnsByAnyAngleAndKeepsItsLength) {
       const double off = 1.0 + std::hypot(x, y) / 16384.0;
       ASSERT_NEAR(vector[0], x * std::cos(turn) - y * std::sin(turn), off) << angle;
       ASSERT_NEAR(vector[1], x * std::sin(turn) + y * std::cos(turn), off) << angle;
+      std::int16_t back[2] = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
+      turn_vector_back(back, static_cast<Angle>(angle));
+      ASSERT_NEAR(back[0], x * std::cos(turn) + y * std::sin(turn), off) << angle;
+      ASSERT_NEAR(back[1], -x * std::sin(turn) + y * std::cos(turn), off) << angle;
     }
   }
 }
