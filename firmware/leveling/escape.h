@@ -27,7 +27,7 @@ class Escape {
   void start();
 
   /// One tick of a robot that runs. Returns true while the manoeuvre drives, with motion().
-  /// backwards: it was told to drive so before; outside: of its site.
+  /// backwards: the way out lies ahead, as of a robot that drove so before; outside: of its site.
   SCREED_OUT_OF_LINE bool tick(bool stuck, bool backwards = false, bool outside = false);
   const MotionCommand& motion() const { return state_.motion; }
   /// Stuck, and no attempt is left: in this tick.
@@ -44,7 +44,7 @@ class Escape {
     uint8_t attempt;      ///< how many were begun since the robot was free for long
     uint8_t way;          ///< to come loose
     uint8_t steps_left;   ///< of that way; 0: does not drive
-    bool mirrored;        ///< it drove backwards into where it is stuck
+    bool mirrored;        ///< the way out lies ahead
     bool outside;         ///< it drove back to its site
     bool gave_up;
   };

@@ -64,8 +64,8 @@ class Leveling {
   bool lost() const { return search_.gave_up(); }
 
  private:
-  /// Where a robot that is stuck came from lies ahead of it: it drove backwards. Beside a wall, the
-  /// middle of the site does: strokes may have carried it there whichever way it drove last.
+  /// The way out of where it is stuck lies ahead: where it came from, if it drove backwards; beside
+  /// a wall the middle of the site, for strokes carry it there whichever way it drove last.
   bool out_is_ahead(const LevelingInput& input) const;
 
   LevelingAlgorithm algorithm_;

@@ -13,7 +13,7 @@ constexpr uint16_t kFaceTicks = 3 * kTickRate_hz;   // longest turn
 constexpr Angle kFacing = angle_from_centidegrees(1000);
 constexpr YawRate kMaxTurnRate = yaw_rate_from_degrees(90);
 constexpr uint16_t kAheadTicks = 60;  // from one work to the next of a row
-constexpr uint16_t kAwayTicks = 150;  // longer, from where it cannot go on
+constexpr uint16_t kAwayTicks = 150;  // so much more travel where a wall ends the row
 constexpr int16_t kAheadSpeed_mm_per_s = 200;
 
 // Flow from which on it works, 1/16 of the map's unit: at first, at least, and by how much it
