@@ -105,7 +105,7 @@ bool touch_wall(const BoardConstants& board, const Parameters& parameters, Angle
   // Quarters of a turn, their middles east, north, west and south.
   const auto quarter = static_cast<uint8_t>(static_cast<uint16_t>(travel + 8192) >> 14);
   const uint8_t axis = quarter & 1U;
-  const int16_t half = axis == kX ? parameters.site_x() : parameters.site_y();
+  const int16_t half = (&parameters.values[Parameters::k_site_x])[axis];
   if (half == 0) return false;
   auto place = static_cast<int16_t>(half - static_cast<int16_t>(board.hull_reach_mm));
   if (quarter >= 2) place = static_cast<int16_t>(-place);

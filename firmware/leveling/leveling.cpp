@@ -37,14 +37,14 @@ void Leveling::take(const Parameters& parameters) {
 }
 
 bool Leveling::out_is_ahead(const LevelingInput& input) const {
-  for (uint8_t axis = kX; axis <= kY; ++axis) {
-    const int16_t wall = search_.wall(axis);
-    if (wall == 0 || static_cast<int16_t>(abs_i16(input.place.mm[axis])) < wall - kByWall_mm) {
-      continue;
+  int16_t place[2] = {input.place.mm[kX], input.place.mm[kY]};
+  const int16_t* wall = search_.walls();
+  for (const int16_t mm : place) {
+    if (*wall != 0 && static_cast<int16_t>(abs_i16(mm)) >= *wall - kByWall_mm) {
+      turn_vector_back(place, input.heading);
+      return place[0] < 0;
     }
-    int16_t place[2] = {input.place.mm[kX], input.place.mm[kY]};
-    turn_vector_back(place, input.heading);
-    return place[0] < 0;
+    ++wall;
   }
   return input.backwards;
 }

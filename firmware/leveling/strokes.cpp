@@ -122,7 +122,7 @@ MotionCommand Strokes::ahead(const LevelingInput& input, Behaviour& behaviour) {
     begin(Phase::kTravel, kTravelTicks - kApartTicks);  // it may work at once
   } else if (map_.site().near_edge(input.place.mm, kFromEdge_mm)) {
     begin_journey();
-    state_.ticks_left += kAwayTicks;
+    state_.ticks_left = kTravelTicks + kAwayTicks;
   } else {
     return behaviour.enter_or_stay(LevelingState::kWalk, {kAheadSpeed_mm_per_s, 0});
   }

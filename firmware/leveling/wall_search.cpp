@@ -17,7 +17,7 @@ bool WallSearch::update(const Place& place) {
   lost_ = place.sigma[axis] > limit;
   gave_up_ = false;
   if (!lost_) return false;
-  if (parameters_.lost_action() == 0 || wall(axis) == 0) {
+  if (parameters_.lost_action() == 0 || walls()[axis] == 0) {
     gave_up_ = true;
     return false;
   }

@@ -28,8 +28,8 @@ class WallSearch {
   bool update(const Place& place);
   /// Lost, and not seeking a wall: in this tick.
   bool gave_up() const { return gave_up_; }
-  /// How far the walls at both ends of an axis are from the middle of the site, mm; 0: none.
-  int16_t wall(uint8_t axis) const { return (&parameters_.values[Parameters::k_site_x])[axis]; }
+  /// How far the walls are from the middle of the site, east and north, mm; 0: none.
+  const int16_t* walls() const { return &parameters_.values[Parameters::k_site_x]; }
   int16_t east() const { return towards_[kX]; }
   int16_t north() const { return towards_[kY]; }
 
