@@ -43,7 +43,7 @@ void FlowMap::tick(const LevelingInput& input, bool steady) {
   relax();
 }
 
-Angle FlowMap::uphill(uint8_t axis) const {
+SCREED_OUT_OF_LINE Angle FlowMap::uphill(uint8_t axis) const {
   return difference(felt_[axis], detail::high_half(level_[axis]));
 }
 
