@@ -20,9 +20,11 @@ PACKAGE_LISTS := tools/debian-packages.txt \
     $(filter arm64,$(BUILD)),tools/arm64/debian-packages.txt)) \
   $(call packages_for,test-can,tests/can) $(call packages_for,test-slurm,tests/slurm) \
   $(call packages_for,test-python,tests/python) $(call packages_for,test-report,tests/report) \
+  $(call packages_for,test-interface,tests/interface) \
   $(call packages_for,camera test-camera,tools/camera) $(call packages_for,pictures,tools/pictures) \
   $(if $(shell command -v npm),,$(call packages_for,build report-page install test-install test-report,tools/report))
-BUILD_FILES := Makefile $(sort $(wildcard $(addsuffix /*.mk,tools/build hal/avr nn/* tests tests/* tools/* tools/*/*)))
+BUILD_FILES := Makefile $(sort $(wildcard $(addsuffix /*.mk,\
+  tools/build host_sim/* hal/avr nn/* tests tests/* tools/* tools/*/*)))
 
 .PHONY: help deps clean
 help:  ## print this list
@@ -47,6 +49,7 @@ else
 include tools/build/options.mk
 include tools/schema/schema.mk
 include tools/build/host.mk
+include host_sim/interface/interface.mk
 include hal/avr/firmware.mk
 include tools/arduino/arduino.mk
 include tools/report/report.mk

@@ -26,7 +26,7 @@ ASAN_UNIT += attitude_command avr_order avr_stack board_table candump_log conten
   session_replay urdf urdf_refusal urdf_roles urdf_body
 # Grids that a position indexes.
 ASAN_UNIT += footprint grid_world kernels material_digging material_flow particle_motion soil_bed soil_grid \
-  shear_field soil_dig soil_measurements soil_path soil_shear soil_laws
+  shear_field soil_dig soil_interface soil_measurements soil_path soil_shear soil_laws
 # The simulated board: registers, bus and USB, which an image writes as it likes.
 ASAN_MCU := board_parts chips quadrature screed_image
 

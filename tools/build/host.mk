@@ -45,7 +45,8 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wno
 # GCC collects what it no longer needs only when it holds half a gigabyte: collecting is a tenth of its time.
 GCC_HEAP = $(if $(findstring clang,$(CXX)),,--param=ggc-min-heapsize=524288)
 # The same bits on every processor: no fused multiply-add, and Eigen adds in no order of its vector code.
-COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fno-math-errno -I. \
+COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fno-math-errno -fPIC \
+  -fvisibility=hidden -fvisibility-inlines-hidden -ffunction-sections -fdata-sections -I. \
   -I$(BUILD_ROOT)/generated
 
 PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng libtiff-4 stb cairo inih CLI11 nlohmann_json libxxhash \
@@ -279,7 +280,8 @@ install: $(SCREED) $(SCHEMA_HEADERS) $(BUILD_ROOT)/report/page.html
 	   install -v -D -m 644 $$image $(INTO)/$(INSTALLED_DATA)/firmware/$$(basename $$(dirname $$image))/screed.elf ; done
 uninstall:  ## remove what `make install` made (PREFIX=/usr/local)
 	rm -rf $(addprefix $(INTO)/,bin/screed bin/screed_flash $(INSTALLED_RULES) $(INSTALLED_DATA) $(INSTALLED_DOC) \
-	  $(INSTALLED_BASH) $(INSTALLED_ZSH) $(INSTALLED_FISH)) $(wildcard $(INTO)/$(INSTALLED_MAN)/screed*.1)
+	  $(INSTALLED_BASH) $(INSTALLED_ZSH) $(INSTALLED_FISH) $(INSTALLED_LIBRARIES)) \
+  $(wildcard $(INTO)/$(INSTALLED_MAN)/screed*.1)
 
 # ---- clangd ----------------------------------------------------------------------------------------------------------
 

@@ -1,6 +1,7 @@
 # Formatting and static analysis. Included by the top Makefile, last.
 
-CPP_FILES := $(shell find firmware hal host_sim nn tools tests boards -name '*.cpp' -o -name '*.h' | LC_ALL=C sort)
+CPP_FILES := $(shell find firmware hal host_sim nn tools tests boards -name '*.cpp' -o -name '*.h' -o -name '*.c' | \
+  LC_ALL=C sort)
 # clang does not know what watchdog.cpp and reset_cause.cpp are made of: instructions of avr-libc's wdt.h, a naked
 # function in C++.
 AVR_TIDY_SOURCES := $(filter-out hal/avr/watchdog.cpp hal/avr/reset_cause.cpp,$(call sources,hal/avr))

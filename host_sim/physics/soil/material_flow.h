@@ -98,6 +98,12 @@ class MaterialFlow {
   size_t queued() const { return queue_size_; }
   /// Forgets which nodes are covered: the step is over.
   void uncover();
+  /// What is kept from step to step, but the heights.
+  template <typename Archive>
+  void serialize(Archive& archive) {
+    archive(grid_, volume_before_, remainder_, compacted_, in_transit_, turn_, held_list_,
+            left_over_, taken_remainder_, sequence_index_, queue_, queue_begin_, queue_size_);
+  }
 
  private:
   /// Lays so many units on a node, or takes them. What is taken leaves the rest as pressed as it

@@ -78,7 +78,14 @@ class SoilBed final : public Terrain {
   /// Nodes that the last step had no time for.
   size_t slopes_left() const { return slopes_left_; }
   const SoilParameters& soil() const { return soil_; }
+  const SoilOptions& options() const { return options_; }
   VolumeBalance balance() const override { return flow_.balance(); }
+  /// What is kept from step to step, but the surface: for an archive as those of cereal. A bed made
+  /// with the same surface, soil and options goes on from it with the same bits.
+  template <typename Archive>
+  void serialize(Archive& archive) {
+    archive(flow_, dig_remainder_, slopes_left_, step_);
+  }
 
  private:
   struct GridPlace {

@@ -78,6 +78,10 @@ class CellHistory {
   void touch(uint32_t now) { step_ = now; }
   /// It does not: the next contact is a new one, and finds what this one left.
   void release() { step_ = kNever; }
+  template <typename Archive>
+  void serialize(Archive& archive) {
+    archive(step_, covered_, old_sinkage_, beside_);
+  }
 
  private:
   static constexpr uint32_t kNever = 1U << 31U;  // right for 2^31 steps, 24 days at 1 ms
@@ -107,6 +111,12 @@ struct SoilCell {
   bool held = false;       ///< by a body, in the last step
   bool queued = false;     ///< the slopes round it are to be looked at
   bool at_border = false;  ///< its neighbours are not all beside it in memory, or nothing follows
+
+  /// What changes, but `covered`: no body is on it between two steps.
+  template <typename Archive>
+  void serialize(Archive& archive) {
+    archive(sunk, loose, history, held, queued);
+  }
 };
 
 /// A cell by its number and its place; of a field with wrap-around the place may be outside.
@@ -116,6 +126,10 @@ struct GridNode {
   int iy;
   /// Further along in the same row; not across the seam.
   GridNode eastward(size_t cells) const { return {node + cells, ix + static_cast<int>(cells), iy}; }
+  template <typename Archive>
+  void serialize(Archive& archive) {
+    archive(node, ix, iy);
+  }
 };
 
 class SoilGrid {
@@ -179,6 +193,12 @@ class SoilGrid {
       run(first, ix, static_cast<size_t>(length));
       ix += length;
     }
+  }
+
+  /// All but the heights.
+  template <typename Archive>
+  void serialize(Archive& archive) {
+    for (SoilCell& cell : cells_) archive(cell);
   }
 
  private:

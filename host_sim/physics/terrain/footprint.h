@@ -54,6 +54,10 @@ struct PathHistory {
   double gradient = 0.0;  ///< displacement along local z over that along local x
   double back_m = 0.0;    ///< by how much it has come back from its furthest place, 0 or more
   double bend_rad = 0.0;  ///< its pitch now less the recent path's mean, positive nose down
+  template <typename Archive>
+  void serialize(Archive& archive) {
+    archive(travel_m, gradient, back_m, bend_rad);
+  }
 };
 
 /// The face of a footprint that is below: its axes ahead, left and up in the world, and its

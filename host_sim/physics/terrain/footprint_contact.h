@@ -67,6 +67,11 @@ struct BodyMemory {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();  ///< m/s, rad/s
   /// What the soil's pressure added to the rate, m/s^2, rad/s^2.
   Eigen::Vector3d soil_acceleration = Eigen::Vector3d::Zero();
+  template <typename Archive>
+  void serialize(Archive& archive) {
+    archive(touching);
+    for (Eigen::Vector3d* it : {&rate, &soil_acceleration}) archive(it->x(), it->y(), it->z());
+  }
 };
 
 /// What a footprint remembers from step to step.
@@ -87,6 +92,10 @@ struct ContactMemory {
     patch_b_m = patch_area_m2 = sinkage = depth = slip = 0.0;
     path = {};
     alone = {};
+  }
+  template <typename Archive>
+  void serialize(Archive& archive) {
+    archive(patch_b_m, patch_area_m2, sinkage, depth, slip, shear, side, face, path, alone);
   }
 };
 

@@ -104,6 +104,11 @@ class ShearField {
   Value at(double along, double across) const;
   /// For kernels that look up many at once; until the next advance().
   ShearView view() const;
+  template <typename Archive>
+  void serialize(Archive& archive) {
+    archive(arrays_, room_, base_, spacing_, travelled_, lane_offset_, touching_, from_front_,
+            rear_, front_, first_, last_);
+  }
 
  private:
   static constexpr int kLanes = 2;

@@ -1,0 +1,68 @@
+#!/bin/bash
+# run.sh: installs the C libraries, moves the tree and builds against it what a user would: the examples, in strict C99
+# and as C++. Ends with "N passed, N failed". SCREED_PROGRAM is the program that they are compared with.
+set -uo pipefail
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+passed=0
+failed=0
+check() {  # NAME COMMAND...
+  local name=$1
+  shift
+  if said=$("$@" 2>&1); then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    printf '%s: %s\n%s\n' failed "$name" "$said"
+  fi
+}
+
+make --no-print-directory INSTALLED=yes install-libraries PREFIX="$tree/first" > "$tree/log" 2>&1 ||
+  { cat "$tree/log"; exit 1; }
+mv "$tree/first" "$tree/moved"
+library=$tree/moved/lib
+examples=host_sim/interface/examples
+export PKG_CONFIG_PATH=$library/pkgconfig LD_LIBRARY_PATH=$library
+read -ra soil <<< "$(pkg-config --cflags --libs screed-soil)"
+read -ra ode <<< "$(pkg-config --cflags --libs ode)"
+strict=(gcc -std=c99 -Wall -Wextra -pedantic -Werror)
+
+# What programs may rely on: the names of the header, and no library but the compiler's.
+grep -oE 'screed_soil_[a-z_]+\(' "$tree/moved/include/screed/soil.h" | tr -d '(' | LC_ALL=C sort -u > "$tree/header"
+for it in "$library/libscreed-soil.so" "$library/libscreed-soil.a"; do
+  nm "$([[ $it = *.so ]] && echo -D || echo -g)" --defined-only "$it" |
+    awk '$2 == "T" { sub(/@.*/, "", $3); print $3 }' | LC_ALL=C sort > "$tree/names"
+  check "names of $(basename "$it")" diff "$tree/header" "$tree/names"
+done
+foreign='! readelf -d "$0" | grep NEEDED | grep -vE "\[(libstdc\+\+|libm|libgcc_s|libc|ld-linux.*)\.so"'
+check 'it needs no library but the compiler'"'"'s' bash -c "$foreign" "$library/libscreed-soil.so"
+check 'nothing of the program is left in it' bash -c '! nm -C "$0" | grep -E "H5|dBody|dWorld|avr_|cairo|CLI::"' \
+  "$library/libscreed-soil.a"
+echo '#include <screed/soil.h>' > "$tree/header.cpp"
+check 'the header alone, as C++' g++ -std=c++11 -Wall -Wextra -pedantic -Werror "${soil[@]:0:1}" -fsyntax-only \
+  "$tree/header.cpp"
+
+# The wheel pulls as that of the program, to the last bit.
+slips=(0 0.2 0.4)
+"$SCREED_PROGRAM" soil wheel --json --slip 0,0.2,0.4 | python3 -c '
+import json, sys
+values = [it["value"] for it in json.load(sys.stdin)["results"] if it["name"] in ("sinkage_mm", "drawbar_pull_n")]
+print("\n".join(f"{value:.17g}" for value in values))' > "$tree/program"
+check 'a wheel' "${strict[@]}" $examples/wheel.c "${soil[@]}" -lm -o "$tree/wheel"
+check 'a wheel, linked statically' "${strict[@]}" $examples/wheel.c "${soil[@]:0:1}" "$library/libscreed-soil.a" \
+  -lstdc++ -lm -o "$tree/wheel_static"
+for it in wheel wheel_static; do
+  "$tree/$it" "${slips[@]}" | grep -oE '(mm|_n) [-0-9.e]+' | cut -d' ' -f2 > "$tree/library"
+  check "$it pulls as in the program" diff "$tree/program" "$tree/library"
+done
+
+# A rover crosses the bed, sinks by some millimetres, and no soil gets lost.
+crosses='/ s: x / { ++lines; x = $4; if (NR > 1 && ($10 < 3 || $10 > 15)) sinks_wrong = 1 }
+  END { exit !(lines == 6 && x > 0.25 && !sinks_wrong && $0 == "soil moved: 0 units are missing") }'
+check 'a rover in ODE' "${strict[@]}" $examples/ode_rover.c "${ode[@]}" "${soil[@]}" -lm -o "$tree/ode_rover"
+check 'it crosses the hump' bash -c 'cd "$(dirname "$0")" && "$0" | awk "$1"' "$tree/ode_rover" "$crosses"
+check 'a rover in MuJoCo' "${strict[@]}" $examples/mujoco_rover.c "${soil[@]}" -lmujoco -lm -o "$tree/mujoco_rover"
+check 'it crosses the bed' bash -c 'cd "$(dirname "$0")" && "$0" | awk "$1"' "$tree/mujoco_rover" "$crosses"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
