@@ -5,17 +5,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cereal/archives/portable_binary.hpp>
-#include <cereal/types/array.hpp>
 #include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <deque>
 #include <memory>
-#include <new>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -24,8 +20,11 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/state_bytes.h"
+#include "host_sim/interface/checks.h"
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/physics/terrain/field_bytes.h"
 #include "host_sim/physics/terrain/footprint.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "version.h"
@@ -33,6 +32,7 @@
 namespace {
 
 using namespace screed;  // of a file whose own names are C's
+using namespace screed::interface;
 
 struct Body {
   std::vector<screed_patch> patches;
@@ -42,80 +42,20 @@ struct Body {
   BodyMemory memory;
 };
 
-/// Two threads on one soil.
-class Busy : public std::runtime_error {
- public:
-  Busy() : std::runtime_error("this soil is in use on another thread; one thread at a time") {}
-};
-
 }  // namespace
 
-struct screed_soil {
+struct screed_soil : Handle {
+  explicit screed_soil(SoilBed of) : bed(std::move(of)) {}
+
   SoilBed bed;
   std::deque<Body> bodies;     // footprints are known by their address
   bool in_step = false;        // bodies have pressed and the step has not ended
   std::vector<uint32_t> seen;  // revisions of the surface's tiles when changes were last asked for
-  mutable std::atomic_flag in_use = ATOMIC_FLAG_INIT;
 };
 
 namespace {
 
-class Use {
- public:
-  explicit Use(const screed_soil* soil) : soil_(soil) {
-    if (soil == nullptr) throw InputError("soil: a null pointer");
-    if (soil->in_use.test_and_set(std::memory_order_acquire)) throw Busy();
-  }
-  ~Use() { soil_->in_use.clear(std::memory_order_release); }
-  Use(const Use&) = delete;
-  Use& operator=(const Use&) = delete;
-
- private:
-  const screed_soil* soil_;
-};
-
-void say(screed_error* error, const char* text) {
-  if (error != nullptr) std::snprintf(error->text, sizeof(error->text), "%s", text);
-}
-
-/// Does the work; whatever it throws becomes a status and a text.
-template <typename Work>
-screed_status attempt(screed_error* error, const Work& work) noexcept {
-  say(error, "");
-  try {
-    work();
-    return SCREED_OK;
-  } catch (const Busy& busy) {
-    say(error, busy.what());
-    return SCREED_BUSY;
-  } catch (const InputError& wrong) {
-    say(error, wrong.what());
-    return SCREED_BAD_INPUT;
-  } catch (const std::bad_alloc&) {
-    say(error, "not enough memory");
-    return SCREED_NO_MEMORY;
-  } catch (const std::exception& failed) {
-    say(error, failed.what());
-    return SCREED_FAILED;
-  }
-}
-
-// ---- what comes from C, checked
-// --------------------------------------------------------------------------------------
-
-std::string number(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
-void require(bool allowed, const std::string& what, double value, const char* range) {
-  if (!allowed) throw InputError(what + " = " + number(value) + "; allowed: " + range);
-}
-
-void require_pointer(const void* pointer, const char* what) {
-  if (pointer == nullptr) throw InputError(std::string(what) + ": a null pointer");
-}
+// What comes from C, checked.
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
@@ -199,8 +139,7 @@ void add_body(screed_soil& soil, std::vector<screed_patch> patches) {
   soil.bodies.push_back(std::move(body));  // a vector that moves keeps its elements' addresses
 }
 
-// ---- making a bed
-// ----------------------------------------------------------------------------------------------------
+// Making a bed.
 
 struct Model {  // of soil and of how it is computed
   SoilParameters soil;
@@ -257,25 +196,20 @@ HeightField field_of(const screed_bed& bed) {
 
 screed_soil* make_soil(HeightField field, Model model) {
   check_soil(model.soil);
-  return new screed_soil{SoilBed(std::move(field), model.soil, model.options), {}, false, {}};
+  return new screed_soil(SoilBed(std::move(field), model.soil, model.options));
 }
 
-// ---- a state as bytes
-// ------------------------------------------------------------------------------------------------
+// A state as bytes.
 
-/// Both ways: what serialize() of the bed and its bodies does not hold, since it makes them.
+/// What serialize() of the bed and its bodies does not hold, since it makes them.
 struct Making {
-  int32_t nodes_x = 0;
-  int32_t nodes_y = 0;
-  double spacing_m = 0.0;
-  int32_t edge = 0;
-  std::vector<Height> heights;
+  FieldBytes field;
   Model model;
   std::vector<std::vector<screed_patch>> bodies;
 
   template <typename Archive>
   void serialize(Archive& archive) {
-    archive(nodes_x, nodes_y, spacing_m, edge, heights, model.soil.name);
+    archive(field, model.soil.name);
     for (const SoilParameterInfo& it : kSoilParameters) archive(model.soil.*it.member);
     SoilOptions& options = model.options;
     archive(options.normal_stress, options.bulldozing, options.avalanches, options.follow_slopes,
@@ -283,24 +217,8 @@ struct Making {
   }
 };
 
-uint64_t checksum(std::string_view bytes) {  // FNV-1a
-  uint64_t sum = 0xCBF29CE484222325U;
-  for (const char byte : bytes) sum = (sum ^ static_cast<uint8_t>(byte)) * 0x100000001B3U;
-  return sum;
-}
-
 Making making_of(const screed_soil& soil) {
-  const HeightField& field = soil.bed.surface();
-  Making making;
-  making.nodes_x = field.nx();
-  making.nodes_y = field.ny();
-  making.spacing_m = field.spacing_m();
-  making.edge = field.wrap()                       ? SCREED_EDGE_WRAPPED
-                : field.edge() == BedEdge::kWalled ? SCREED_EDGE_WALLED
-                                                   : SCREED_EDGE_OPEN;
-  making.heights.assign(field.heights(),
-                        field.heights() + static_cast<size_t>(field.nx()) * field.ny());
-  making.model = {soil.bed.soil(), soil.bed.options()};
+  Making making{bytes_of(soil.bed.surface()), {soil.bed.soil(), soil.bed.options()}, {}};
   for (const Body& body : soil.bodies) making.bodies.push_back(body.patches);
   return making;
 }
@@ -314,56 +232,22 @@ void serialize_rest(Archive& archive, screed_soil& soil) {
   }
 }
 
-/// What stands before the rest of a state.
-struct Head {
-  std::array<char, 12> name = {'s', 'c', 'r', 'e', 'e', 'd', ' ', 's', 'o', 'i', 'l', '\n'};
-  uint32_t version = 1;
-  uint64_t sum = 0;  // of the rest
-
-  template <typename Archive>
-  void serialize(Archive& archive) {
-    archive(name, version, sum);
-  }
-};
+constexpr StateName kName = {"soil", 1};
 
 std::string state_of(const screed_soil& soil) {
   std::ostringstream rest;
-  {
-    cereal::PortableBinaryOutputArchive archive(rest);
-    archive(making_of(soil));
-    serialize_rest(archive, const_cast<screed_soil&>(soil));  // an archive that writes only reads
-  }
-  std::ostringstream head;
-  cereal::PortableBinaryOutputArchive{head}(Head{.sum = checksum(rest.view())});
-  return head.str() + rest.str();
+  cereal::PortableBinaryOutputArchive archive(rest);
+  archive(making_of(soil));
+  serialize_rest(archive, const_cast<screed_soil&>(soil));  // an archive that writes only reads
+  return with_head(kName, rest.view());
 }
 
 screed_soil* soil_from(std::string_view state) {
-  constexpr size_t kHeadBytes = 1 + 12 + 4 + 8;  // the first says the order of bytes
-  const InputError damaged("state: damaged, or not one of this library");
-  if (state.size() <= kHeadBytes) throw damaged;
-  Head head;
-  std::istringstream head_bytes(std::string(state.substr(0, kHeadBytes)));
-  cereal::PortableBinaryInputArchive{head_bytes}(head);
-  const std::string_view rest = state.substr(kHeadBytes);
-  if (head.name != Head().name || head.sum != checksum(rest)) throw damaged;
-  if (head.version != Head().version) {
-    throw InputError("state of version " + std::to_string(head.version) +
-                     "; allowed: " + std::to_string(Head().version));
-  }
-  std::istringstream bytes{std::string(rest)};
+  std::istringstream bytes{std::string(without_head(kName, state))};
   cereal::PortableBinaryInputArchive archive(bytes);
   Making making;
   archive(making);
-  HeightField field(making.nodes_x, making.nodes_y, making.spacing_m,
-                    making.edge == SCREED_EDGE_WRAPPED);
-  if (making.edge == SCREED_EDGE_WALLED) field.add_walls();
-  for (int node = 0; node < making.nodes_x * making.nodes_y; ++node) {
-    field.set_node(node % making.nodes_x, node / making.nodes_x,
-                   making.heights.at(static_cast<size_t>(node)));
-  }
-  field.refresh_bounds();
-  std::unique_ptr<screed_soil> soil(make_soil(std::move(field), making.model));
+  std::unique_ptr<screed_soil> soil(make_soil(field_of(making.field), making.model));
   for (std::vector<screed_patch>& patches : making.bodies) add_body(*soil, std::move(patches));
   serialize_rest(archive, *soil);
   return soil.release();
@@ -376,8 +260,7 @@ void serialize(Archive& archive, screed_patch& patch) {
   archive(patch.shape, patch.size, patch.friction, patch.adhesion, patch.lug_height);
 }
 
-// ---- the interface
-// ---------------------------------------------------------------------------------------------------
+// The interface.
 
 const char* screed_soil_version() {
   return SCREED_VERSION;
@@ -412,7 +295,7 @@ const char* screed_soil_key(size_t index) {
 screed_status screed_soil_parameter(const screed_soil* soil, const char* key, double* value,
                                     screed_error* error) {
   return attempt(error, [&] {
-    const Use use(soil);
+    const Use use(soil, "soil");
     require_pointer(key, "key");
     require_pointer(value, "value");
     for (const SoilParameterInfo& it : kSoilParameters) {
@@ -430,7 +313,7 @@ int screed_soil_add_body(screed_soil* soil, const screed_patch* patches, size_t 
   constexpr size_t kMaxPatches = 1024;
   int index = -1;
   attempt(error, [&] {
-    const Use use(soil);
+    const Use use(soil, "soil");
     require_pointer(patches, "patches");
     require(count >= 1 && count <= kMaxPatches, "count of patches", static_cast<double>(count),
             "1 to 1024");
@@ -444,7 +327,7 @@ screed_status screed_soil_press(screed_soil* soil, int body, const screed_body_m
                                 const screed_patch_motion* patches, double dt,
                                 screed_wrench* wrenches, screed_error* error) {
   return attempt(error, [&] {
-    const Use use(soil);
+    const Use use(soil, "soil");
     if (body < 0 || static_cast<size_t>(body) >= soil->bodies.size()) {
       throw InputError("body = " + std::to_string(body) + "; allowed: numbers of bodies, " +
                        std::to_string(soil->bodies.size()) + " were added");
@@ -496,7 +379,7 @@ screed_status screed_soil_press(screed_soil* soil, int body, const screed_body_m
 
 screed_status screed_soil_end_step(screed_soil* soil, screed_error* error) {
   return attempt(error, [&] {
-    const Use use(soil);
+    const Use use(soil, "soil");
     soil->bed.end_step();
     soil->in_step = false;
   });
@@ -509,29 +392,15 @@ double screed_soil_height(const screed_soil* soil, double x, double y) {
 screed_status screed_soil_heights(const screed_soil* soil, const screed_rectangle* part,
                                   double* heights, screed_error* error) {
   return attempt(error, [&] {
-    const Use use(soil);
-    require_pointer(part, "part");
-    require_pointer(heights, "heights");
-    const HeightField& field = soil->bed.surface();
-    const auto within = [](int first, int count, int all) {
-      return first >= 0 && count >= 0 && first <= all && count <= all - first;
-    };
-    if (!within(part->x, part->nodes_x, field.nx()) ||
-        !within(part->y, part->nodes_y, field.ny())) {
-      throw InputError("part: beyond the bed; allowed: within 0 to " + std::to_string(field.nx()) +
-                       " and 0 to " + std::to_string(field.ny()) + " nodes");
-    }
-    for (int iy = part->y; iy < part->y + part->nodes_y; ++iy) {
-      for (int ix = part->x; ix < part->x + part->nodes_x; ++ix)
-        *heights++ = field.node(ix, iy) * kHeightUnit_m;
-    }
+    const Use use(soil, "soil");
+    copy_heights(soil->bed.surface(), part, heights);
   });
 }
 
 screed_status screed_soil_changed(screed_soil* soil, screed_rectangle* changed,
                                   screed_error* error) {
   return attempt(error, [&] {
-    const Use use(soil);
+    const Use use(soil, "soil");
     require_pointer(changed, "changed");
     const HeightField& field = soil->bed.surface();
     const std::vector<uint32_t>& now = field.tile_revisions();
@@ -555,7 +424,7 @@ screed_status screed_soil_changed(screed_soil* soil, screed_rectangle* changed,
 screed_status screed_soil_volumes(const screed_soil* soil, screed_volumes* volumes,
                                   screed_error* error) {
   return attempt(error, [&] {
-    const Use use(soil);
+    const Use use(soil, "soil");
     require_pointer(volumes, "volumes");
     const VolumeBalance balance = soil->bed.balance();
     const double spacing = soil->bed.surface().spacing_m();
@@ -567,7 +436,7 @@ screed_status screed_soil_volumes(const screed_soil* soil, screed_volumes* volum
 size_t screed_soil_save(const screed_soil* soil, void* state, size_t room, screed_error* error) {
   size_t size = 0;
   attempt(error, [&] {
-    const Use use(soil);
+    const Use use(soil, "soil");
     if (soil->in_step) throw InputError("save: in the middle of a step; allowed: after its end");
     const std::string bytes = state_of(*soil);
     if (bytes.size() <= room) {

@@ -24,22 +24,26 @@ library=$tree/moved/lib
 examples=host_sim/interface/examples
 export PKG_CONFIG_PATH=$library/pkgconfig LD_LIBRARY_PATH=$library
 read -ra soil <<< "$(pkg-config --cflags --libs screed-soil)"
+read -ra core <<< "$(pkg-config --cflags --libs screed-core)"
 read -ra ode <<< "$(pkg-config --cflags --libs ode)"
 strict=(gcc -std=c99 -Wall -Wextra -pedantic -Werror)
 
-# What programs may rely on: the names of the header, and no library but the compiler's.
-grep -oE 'screed_soil_[a-z_]+\(' "$tree/moved/include/screed/soil.h" | tr -d '(' | LC_ALL=C sort -u > "$tree/header"
-for it in "$library/libscreed-soil.so" "$library/libscreed-soil.a"; do
-  nm "$([[ $it = *.so ]] && echo -D || echo -g)" --defined-only "$it" |
-    awk '$2 == "T" { sub(/@.*/, "", $3); print $3 }' | LC_ALL=C sort > "$tree/names"
-  check "names of $(basename "$it")" diff "$tree/header" "$tree/names"
-done
+# What programs may rely on: the names of the headers, and no library but the compiler's.
+names_in() { grep -ohE 'screed_[a-z_]+\(' "$@" | tr -d '(' | LC_ALL=C sort -u; }
 foreign='! readelf -d "$0" | grep NEEDED | grep -vE "\[(libstdc\+\+|libm|libgcc_s|libc|ld-linux.*)\.so"'
-check 'it needs no library but the compiler'"'"'s' bash -c "$foreign" "$library/libscreed-soil.so"
-check 'nothing of the program is left in it' bash -c '! nm -C "$0" | grep -E "H5|dBody|dWorld|avr_|cairo|CLI::"' \
-  "$library/libscreed-soil.a"
-echo '#include <screed/soil.h>' > "$tree/header.cpp"
-check 'the header alone, as C++' g++ -std=c++11 -Wall -Wextra -pedantic -Werror "${soil[@]:0:1}" -fsyntax-only \
+for it in soil core; do
+  names_in "$tree"/moved/include/screed/$([ $it = core ] && echo '*' || echo $it).h > "$tree/header"
+  for file in "$library/libscreed-$it.so" "$library/libscreed-$it.a"; do
+    nm "$([[ $file = *.so ]] && echo -D || echo -g)" --defined-only "$file" |
+      awk '$2 == "T" { sub(/@.*/, "", $3); print $3 }' | LC_ALL=C sort > "$tree/names"
+    check "names of $(basename "$file")" diff "$tree/header" "$tree/names"
+  done
+  check "libscreed-$it needs no library but the compiler's" bash -c "$foreign" "$library/libscreed-$it.so"
+  check "nothing else of the program is left in libscreed-$it" \
+    bash -c '! nm -C "$0" | grep -E "H5[A-Z]|\b(dBody|dWorld|avr_|cairo_|CLI::)"' "$library/libscreed-$it.a"
+done
+printf '#include <screed/soil.h>\n#include <screed/world.h>\n' > "$tree/header.cpp"
+check 'the headers alone, as C++' g++ -std=c++11 -Wall -Wextra -pedantic -Werror "${soil[@]:0:1}" -fsyntax-only \
   "$tree/header.cpp"
 
 # The wheel pulls as that of the program, to the last bit.
@@ -55,6 +59,21 @@ for it in wheel wheel_static; do
   "$tree/$it" "${slips[@]}" | grep -oE '(mm|_n) [-0-9.e]+' | cut -d' ' -f2 > "$tree/library"
   check "$it pulls as in the program" diff "$tree/program" "$tree/library"
 done
+
+# A world lives as in the program, to the last bit.
+figures() { grep -oE '[-0-9.e]+ m' | cut -d' ' -f1 | tail -3; }
+"$SCREED_PROGRAM" prepare level_bed --out "$tree/level_bed.world" 2> /dev/null
+"$SCREED_PROGRAM" sim level_bed --hal surrogate --duration 60 --no-pictures --json --quiet --out "$tree/run" \
+  > "$tree/summary" 2> /dev/null
+python3 -c '
+import csv, json, sys
+row = list(csv.reader(open(sys.argv[1])))[-1]
+level = json.load(open(sys.argv[2]))["terrain_after"]["level_deviation_m"]
+print("\n".join(f"{float(value):.17g}" for value in (*row[1:3], level)))' "$tree/run/frames.csv" "$tree/summary" \
+  > "$tree/program"
+check 'a world' "${strict[@]}" $examples/world.c "${core[@]}" -o "$tree/world"
+"$tree/world" "$tree/level_bed.world" | figures > "$tree/library"
+check 'it lives as in the program' diff "$tree/program" "$tree/library"
 
 # A rover crosses the bed, sinks by some millimetres, and no soil gets lost.
 crosses='/ s: x / { ++lines; x = $4; if (NR > 1 && ($10 < 3 || $10 > 15)) sinks_wrong = 1 }

@@ -64,7 +64,7 @@ WRITE_CHANGED = cat > $@.new && { cmp -s $@.new $@ && rm $@.new || mv $@.new $@ 
 
 $(B)/host.flags: FORCE | $(SYSROOT)
 	@mkdir -p $(@D)
-	@{ echo "-std=c++20 $(GCC_HEAP) $(COMMON_FLAGS) -I$(B)/generated" ; \
+	@{ echo "-std=c++20 $(GCC_HEAP) $(COMMON_FLAGS) -I$(B)/generated -Ihost_sim/interface" ; \
 	   $(call package_flags,$(PACKAGES) $(TEST_PACKAGES) $(BENCH_PACKAGES)) ; } | $(WRITE_CHANGED)
 $(B)/firmware.flags: FORCE
 	@mkdir -p $(@D)
@@ -178,7 +178,8 @@ $(B)/headers/test.h.gch: tools/build/headers/host.h
 
 # Kernels for several instruction sets give the same names; what mutation testing changes is compiled again and again;
 # some need flags of their own.
-ALONE := tools/command_line/% $(addsuffix /%,host_sim/physics/kernels host_sim/physics/particles nn/batch) \
+ALONE := tools/command_line/% $(SIMAVR_SOURCES) \
+         $(addsuffix /%,host_sim/physics/kernels host_sim/physics/particles nn/batch) \
          $(shell sed -nE 's/^((host_sim|nn)[^ ]*\.cpp) .*/\1/p' tools/mutants/targets.txt) \
          $(TINY_DNN_SOURCES) $(VECTOR_SOURCES) $(RSVG_SOURCES) $(SDL_SOURCES)
 # Sources a group, at most. Larger ones save less where the compiler optimises, and who changes one source waits for all

@@ -103,7 +103,8 @@ void GroundStation::add_line(const CanFrame& frame, std::vector<uint8_t>& lines)
 
 std::vector<uint8_t> GroundStation::transmit(uint64_t now_us) {
   std::vector<uint8_t> lines;
-  if (ticks_ % kHeartbeatTicks == 0) {
+  const bool heartbeat = ticks_ % kHeartbeatTicks == 0;
+  if (heartbeat) {
     add_frame(frame_of(message::GroundHeartbeat{static_cast<uint32_t>(now_us / 1000U)}),
               heartbeat_counter_, lines);
   }
@@ -115,12 +116,16 @@ std::vector<uint8_t> GroundStation::transmit(uint64_t now_us) {
     if (report_.state == RobotState::kArmed && arm_) {
       add_line(signer_.sign(CommandOp::kRun), lines);
     }
+    drive_is_new_ = true;
+  }
+  if (drive_is_new_ && !heartbeat) {
     if (report_.state == RobotState::kRunning && drive_.has_value()) {
       const DriveArgument argument = {
           static_cast<int16_t>(std::lround(drive_->speed_m_per_s * 1000.0)),
           static_cast<int16_t>(std::lround(drive_->yaw_rate_deg_per_s * 10.0))};
       add_line(signer_.sign(CommandOp::kDrive, argument), lines);
     }
+    drive_is_new_ = false;
   }
   if (fixes_.has_value() && report_.heard) {
     if (const auto fix = fixes_->at(ticks_, robot_x_m_, robot_y_m_))

@@ -90,6 +90,11 @@ class GroundStation {
                 const std::optional<PositionFixes>& fixes = std::nullopt)
       : arm_(arm), drive_(drive), log_(log), signer_(key), fixes_(fixes) {}
 
+  /// Commands this from now on, at once and then as often as a drive that it began with.
+  void drive(const DriveCommand& command) {
+    drive_ = command;
+    drive_is_new_ = true;
+  }
   /// What an overhead camera sees: where the robot is, m.
   void see_robot(double x_m, double y_m) {
     robot_x_m_ = x_m;
@@ -112,6 +117,7 @@ class GroundStation {
 
   bool arm_;
   std::optional<DriveCommand> drive_;
+  bool drive_is_new_ = false;
   std::ostream* log_;
   CommandSigner signer_;
   std::optional<PositionFixes> fixes_;

@@ -11,35 +11,15 @@
        screed_soil_end_step(soil, &error);
      }
 
-   Units are SI, angles in radians, the world's z is up; matrices are row by row. Nothing is thrown
-   or printed. Functions that can fail return a screed_status, or a null pointer, -1 or 0 in place
-   of what they make; they change nothing then, and say why in `error`, which may be null. The
-   library keeps no state of its own: soils on several threads do not know of each other. One soil
-   is for one thread at a time; a call that comes while another is at work fails with SCREED_BUSY.
-   Same calls, same bits, on every processor. */
+   Units, errors and threads: base.h. */
 #ifndef SCREED_SOIL_H
 #define SCREED_SOIL_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include <screed/base.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-#define SCREED_API __attribute__((visibility("default")))
-
-typedef enum screed_status {
-  SCREED_OK = 0,
-  SCREED_BAD_INPUT = 1, /* an argument is not allowed: the text says which and what is */
-  SCREED_BUSY = 2,      /* the same soil is in use on another thread */
-  SCREED_NO_MEMORY = 3,
-  SCREED_FAILED = 4
-} screed_status;
-
-typedef struct screed_error {
-  char text[256]; /* one line, ends with 0; empty after success */
-} screed_error;
 
 /* That of the program: "MAJOR.MINOR.PATCH", and behind a plus the commit that it was built from. */
 SCREED_API const char* screed_soil_version(void);
@@ -148,14 +128,6 @@ SCREED_API screed_status screed_soil_press(screed_soil* soil, int body,
 SCREED_API screed_status screed_soil_end_step(screed_soil* soil, screed_error* error);
 
 /* ---- its surface ----------------------------------------------------------------------------- */
-
-/* Nodes from (x, y) on, so many to the east and to the north. */
-typedef struct screed_rectangle {
-  int x;
-  int y;
-  int nodes_x;
-  int nodes_y;
-} screed_rectangle;
 
 /* Of the surface between nodes, m; beyond the edge as the edge says. */
 SCREED_API double screed_soil_height(const screed_soil* soil, double x, double y);

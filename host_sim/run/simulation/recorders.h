@@ -8,14 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "firmware/robot/robot.h"
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/terrain/terrain.h"
-#include "host_sim/physics/world/environment.h"
 #include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/run/session/session_layout.h"
 #include "host_sim/run/session/session_writer.h"
@@ -94,23 +92,6 @@ class SessionRecorder {
   uint64_t height_changes_ = 0;
   uint64_t ticks_ = 0;
   std::vector<PathPoint> path_;
-};
-
-// Makes one frame of a session from the world's truth and from what the robot thinks.
-
-class FrameRecorder {
- public:
-  /// The frame of this tick: the plant as the sample saw it, the robot after its answer.
-  SimFrame record(double time_s, const RobotView& plant, const Robot& robot);
-
-  /// Length of the chassis' path so far, m.
-  double distance_m() const { return distance_m_; }
-
- private:
-  bool first_ = true;
-  Eigen::Vector3d last_travelled_ = Eigen::Vector3d::Zero();
-  double last_heading_ = 0.0;
-  double distance_m_ = 0.0;
 };
 
 }  // namespace screed

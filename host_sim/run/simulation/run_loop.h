@@ -20,6 +20,7 @@
 #include "host_sim/run/simulation/outcome.h"
 #include "host_sim/run/simulation/parity.h"
 #include "host_sim/run/simulation/recorders.h"
+#include "host_sim/run/world/frame_recorder.h"
 #include "host_sim/run/world/world.h"
 
 namespace screed {

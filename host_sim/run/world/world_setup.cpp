@@ -21,6 +21,7 @@
 #include "host_sim/run/experiment/robot_sections.h"
 #include "host_sim/run/world/image_robot.h"
 #include "host_sim/run/world/placement.h"
+#include "host_sim/standin/standin_plant.h"
 
 namespace screed {
 namespace {
@@ -128,12 +129,11 @@ std::optional<DriveCommand> drive_of(const Experiment& experiment) {
   return DriveCommand{experiment.drive.speed_m_per_s, experiment.drive.yaw_rate_deg_per_s};
 }
 
-WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup) {
+WorldOptions world_options(const Experiment& experiment, const std::string& board) {
   WorldOptions options;
-  options.progress = setup.progress;
-  options.vehicle = vehicle_options(experiment, setup.board);
-  options.encoder_counts_per_turn = board_motor(setup.board).counts_per_turn;
-  options.battery = make_battery(experiment, setup.board);
+  options.vehicle = vehicle_options(experiment, board);
+  options.encoder_counts_per_turn = board_motor(board).counts_per_turn;
+  options.battery = make_battery(experiment, board);
   options.seed = experiment.experiment.seed;
   options.physics_step_s = experiment.physics.step_s;
   options.robot_friction = experiment.robots.friction;
@@ -149,7 +149,7 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   options.ground_station_arms = experiment.radio.ground_station;
   options.fixes = {experiment.fixes.period_s, experiment.fixes.sigma_m,
                    experiment.fixes.outage_every_s, experiment.fixes.outage_s};
-  options.robots = robot_options(experiment, setup.board);
+  options.robots = robot_options(experiment, board);
   if (experiment.map.is_soil()) {
     options.soil = make_soil(experiment);
     options.soil_options.bulldozing = experiment.soil.bulldozing;
@@ -160,7 +160,8 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   return options;
 }
 
-/// Where the robots start: at these places, all at the height and as inclined as [vehicle] says.
+/// Where the robots start on a bed of this size: at these places, all at the height and as inclined
+/// as [vehicle] says.
 std::vector<StartPose> start_poses(const Experiment& experiment, const HeightField& terrain) {
   const VehicleSection& vehicle = experiment.vehicle;
   std::vector<StartPose> starts;
@@ -210,16 +211,31 @@ SoilParameters make_soil(const Experiment& experiment) {
   return soil;
 }
 
-HeightField make_terrain(const Experiment& experiment) {
-  HeightField field = untrapped_terrain(experiment);
+namespace {
+
+/// Ground, relief and walls.
+PreparedWorld prepare_ground(const Experiment& experiment) {
+  PreparedWorld world{.ground = untrapped_terrain(experiment)};
+  world.walled = experiment.map.edge() == BedEdge::kWalled;
+  world.options.seed = experiment.experiment.seed;
   if (experiment.relief.is_there()) {
-    ReliefOptions relief = experiment.relief.options;
-    relief.seed = experiment.relief.seed.value_or(experiment.experiment.seed);
-    add_relief(relief, field);
+    world.relief = experiment.relief.options;
+    const bool trapped = experiment.trap.kind != "none";
+    if (trapped || experiment.relief.seed.has_value()) {  // it lies in the ground for good
+      world.relief->seed = experiment.relief.seed.value_or(experiment.experiment.seed);
+      add_relief(*world.relief, world.ground);
+      world.relief.reset();
+      if (!experiment.relief.seed.has_value()) world.one_seed = "a trap lies on its relief";
+    }
   }
-  set_trap(experiment, field);
-  if (experiment.map.edge() == BedEdge::kWalled) field.add_walls();
-  return field;
+  set_trap(experiment, world.ground);
+  return world;
+}
+
+}  // namespace
+
+HeightField make_terrain(const Experiment& experiment) {
+  return prepare_ground(experiment).take_terrain();
 }
 
 std::optional<std::string> large_bed_note(const Experiment& experiment, double least_cell_m) {
@@ -304,8 +320,20 @@ std::vector<RobotOptions> robot_options(const Experiment& experiment, const std:
 
 namespace {
 
+PreparedWorld prepare(const Experiment& experiment, const std::string& board) {
+  PreparedWorld world = prepare_ground(experiment);
+  world.options = world_options(experiment, board);
+  world.model = make_robot_model(experiment, board);
+  world.options.starts = start_poses(experiment, world.ground);
+  if (experiment.robots.count > 1 && experiment.robots.placement == "random")
+    world.one_seed = "robots stand at random places";
+  return world;
+}
+
 std::unique_ptr<World> world_of(const Experiment& experiment, const WorldSetup& setup) {
-  WorldOptions options = world_options(experiment, setup);
+  PreparedWorld prepared = prepare(experiment, setup.board);
+  WorldOptions& options = prepared.options;
+  options.progress = setup.progress;
   RobotOptions& first = options.robots[0];
   first.ground_port = setup.ground_port;
   for (size_t i = 0; i < setup.telemetry_logs.size(); ++i)
@@ -319,16 +347,25 @@ std::unique_ptr<World> world_of(const Experiment& experiment, const WorldSetup& 
     first.image = RobotImage{*setup.image, setup.board, setup.gdb_port};
     check_image(first);
   }
-  const Assembly model = make_robot_model(experiment, setup.board);
-  HeightField terrain = make_terrain(experiment);
-  options.starts = start_poses(experiment, terrain);
   std::unique_ptr<Environment> plant =
-      setup.environment ? setup.environment(std::move(terrain), model, options)
-                        : std::make_unique<Plant>(std::move(terrain), model, options);
+      setup.environment ? setup.environment(prepared.take_terrain(), prepared.model, options)
+                        : std::make_unique<Plant>(prepared.take_terrain(), prepared.model, options);
   return std::make_unique<World>(std::move(plant), options);
 }
 
 }  // namespace
+
+PreparedWorld prepare_standin(const Experiment& experiment, const std::string& board) {
+  try {
+    Experiment coarse = experiment;
+    coarse.soil.cell_m = std::max(coarse.soil.cell_m, kStandInCell_m);
+    PreparedWorld world = prepare(coarse, board);
+    make_standin_world(world);  // throws what does not suit it
+    return world;
+  } catch (const InputError& error) {
+    throw with_place(experiment, error);
+  }
+}
 
 std::unique_ptr<World> make_world(const Experiment& experiment, const WorldSetup& setup) {
   try {

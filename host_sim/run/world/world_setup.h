@@ -15,6 +15,7 @@
 #include "host_sim/physics/vehicle/vehicle_options.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/world/prepared_world.h"
 #include "host_sim/run/world/world.h"
 
 namespace screed {
@@ -56,6 +57,10 @@ VehicleOptions vehicle_options(const Experiment& experiment, const std::string& 
 /// What is each robot's own in an experiment, on a board of this name. Throws InputError for an
 /// unknown one.
 std::vector<RobotOptions> robot_options(const Experiment& experiment, const std::string& board);
+/// What the experiment comes to in the stand-in, on cells as coarse as there; nobody listens to its
+/// robots yet. Throws InputError.
+PreparedWorld prepare_standin(const Experiment& experiment,
+                              const std::string& board = kDefaultBoard);
 /// A world as the experiment describes it. Throws InputError, and what setup.progress throws.
 std::unique_ptr<World> make_world(const Experiment& experiment, const WorldSetup& setup = {});
 

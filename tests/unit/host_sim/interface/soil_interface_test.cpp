@@ -239,7 +239,7 @@ TEST(SoilInterface, DamagedStatesAreRefused) {
   };
   for (size_t size = 1; size < state.size(); ++size) {
     ASSERT_EQ(load({state.begin(), state.begin() + static_cast<ptrdiff_t>(size)}),
-              "state: damaged, or not one of this library");
+              "state of a soil: damaged, or of something else");
   }
   for (size_t at = 0; at < state.size(); ++at) {
     std::vector<char> damaged = state;
