@@ -17,7 +17,8 @@ struct DataFolders {
 
 /// The first of
 ///   the folder `chosen`, if it is not empty: the user's, in the environment variable SCREED_DATA;
-///   ../share/screed beside the folder of `program`: an installed tree, wherever it was moved to;
+///   ../share/screed or ../../share/screed from the folder of `program`, which may be a library: an
+///   installed tree, wherever it was moved to;
 ///   the folders of the sources that the program was built from.
 /// Throws InputError when `chosen` does not hold experiments and boards, or when none is there.
 DataFolders find_data_folders(const std::string& chosen, const std::filesystem::path& program);

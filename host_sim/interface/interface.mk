@@ -5,40 +5,45 @@
 # Changes when programs that were linked before would no longer run.
 INTERFACE_ABI := 0
 INTERFACE_HEADERS := $(wildcard host_sim/interface/screed/*.h)
-# NAME.symbols: the functions of libscreed-NAME, one a line, so that what leaves or joins shows.
-INTERFACE_NAMES := soil core
+# NAME.symbols: the functions of libNAME, one a line, so that what leaves or joins shows.
+INTERFACE_NAMES := screed-soil screed-core screed
 symbols_of = $(shell cat host_sim/interface/$(1).symbols)
 # No image is run by them: simavr would bring its licence.
 INTERFACE_OBJECTS := $(if $(filter yes,$(MCU)),$(B)/host_sim/run/world/without_simavr.o) $(LIBRARY)
-
-# What they do not need is dropped with all that it asks for; so no library is named but the compiler's own.
+# What they do not need is dropped with all that it asks for; so the small ones need no library but the compiler's own.
+interface_libraries_screed = $$(sed 's/-lsimavr//' $(B)/link.flags)
 only_needed = -Wl,--gc-sections $(patsubst %,-Wl$(comma)-u$(comma)%,$(call symbols_of,$(1)))
+
 define interface_library
 $(B)/$(1).map: host_sim/interface/$(1).symbols
 	@mkdir -p $$(@D)
 	@echo 'SCREED_$(INTERFACE_ABI) { global: $$(patsubst %,%;,$$(call symbols_of,$(1))) local: *; };' > $$@
-$(B)/libscreed-$(1).so.$(INTERFACE_ABI): $(INTERFACE_OBJECTS) $(B)/$(1).map
+$(B)/lib$(1).so.$(INTERFACE_ABI): $(INTERFACE_OBJECTS) $(B)/$(1).map $(B)/link.flags
 	@echo "  LINK $$@"
-	@$$(CXX) -shared $$(filter -fsanitize%,$$(OPTIMISE_$(BUILD))) -Wl,-soname,$$(@F) \
-	  -Wl,--version-script=$(B)/$(1).map -Wl,-z,defs $$(call only_needed,$(1)) $(INTERFACE_OBJECTS) -o $$@
+	@$$(CXX) -shared $$(filter -fsanitize%,$$(OPTIMISE_$(BUILD))) -Wl,-soname,$$(@F) -Wl,--version-script=$(B)/$(1).map \
+	  -Wl,-z,defs $$(call only_needed,$(1)) $(INTERFACE_OBJECTS) -Wl,--as-needed $$(interface_libraries_$(1)) -o $$@
 	@ln -sfn $$(@F) $$(basename $$@)
-$(B)/libscreed-$(1).a: $(INTERFACE_OBJECTS) host_sim/interface/$(1).symbols
+$(B)/$(1).pc: host_sim/interface/screed.pc.in FORCE
+	@sed 's|@NAME@|$(1)|; s|@VERSION@|$(firstword $(VERSION_WORDS))|' $$< | $$(WRITE_CHANGED)
+endef
+$(foreach name,$(INTERFACE_NAMES),$(eval $(call interface_library,$(name))))
+define interface_archive
+$(B)/lib$(1).a: $(INTERFACE_OBJECTS) host_sim/interface/$(1).symbols
 	@echo "  AR   $$@"
 	@$$(CXX) -r -nostdlib $$(call only_needed,$(1)) $(INTERFACE_OBJECTS) -o $$(@:.a=.o)
 	@objcopy --strip-unneeded $$(addprefix --keep-global-symbol=,$$(call symbols_of,$(1))) $$(@:.a=.o)
 	@rm -f $$@
 	@ar rcs $$@ $$(@:.a=.o)
-$(B)/screed-$(1).pc: host_sim/interface/screed.pc.in FORCE
-	@sed 's|@NAME@|$(1)|; s|@VERSION@|$(firstword $(VERSION_WORDS))|' $$< | $$(WRITE_CHANGED)
 endef
-$(foreach name,$(INTERFACE_NAMES),$(eval $(call interface_library,$(name))))
-INTERFACE_SHARED := $(INTERFACE_NAMES:%=$(B)/libscreed-%.so.$(INTERFACE_ABI))
-INTERFACE_STATIC := $(INTERFACE_NAMES:%=$(B)/libscreed-%.a)
-INTERFACE_PC := $(INTERFACE_NAMES:%=$(B)/screed-%.pc)
+INTERFACE_ARCHIVES := screed-soil screed-core
+$(foreach name,$(INTERFACE_ARCHIVES),$(eval $(call interface_archive,$(name))))
+INTERFACE_SHARED := $(INTERFACE_NAMES:%=$(B)/lib%.so.$(INTERFACE_ABI))
+INTERFACE_STATIC := $(INTERFACE_ARCHIVES:%=$(B)/lib%.a)
+INTERFACE_PC := $(INTERFACE_NAMES:%=$(B)/%.pc)
 INTERFACE_LIBRARIES := $(INTERFACE_SHARED) $(INTERFACE_STATIC) $(INTERFACE_PC)
 
 .PHONY: libraries install-libraries test-interface
-libraries: $(INTERFACE_LIBRARIES)  ## build/<BUILD>/libscreed-soil, -core: soil, and worlds, for other programs (C)
+libraries: $(INTERFACE_LIBRARIES)  ## build/<BUILD>/libscreed-soil, -core and libscreed, for other programs (C)
 INSTALLED_LIBRARIES := include/screed $(addprefix lib/,$(addprefix pkgconfig/,$(notdir $(INTERFACE_PC))) \
   $(notdir $(INTERFACE_SHARED) $(basename $(INTERFACE_SHARED)) $(INTERFACE_STATIC)))
 install: install-libraries

@@ -1,104 +1,21 @@
-// The C interface of worlds.
+// The C interface of a world.
 #include <screed/world.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
 #include <memory>
-#include <numbers>
-#include <optional>
 #include <span>
-#include <string>
+#include <string_view>
 #include <utility>
-#include <vector>
 
-#include "hal/sample.h"
-#include "host_sim/core/record.h"
 #include "host_sim/interface/checks.h"
-#include "host_sim/leveling/leveling_meter.h"
-#include "host_sim/run/world/frame_recorder.h"
-#include "host_sim/run/world/prepared_world.h"
-#include "host_sim/run/world/world.h"
-
-namespace {
+#include "host_sim/interface/told_world.h"
 
 using namespace screed;  // of a file whose own names are C's
 using namespace screed::interface;
 
-constexpr int kMaxTicks = 1000000;
-
-/// What robots are told, and the frames of the tick in which they answered.
-class Robots final : public RobotWatch {
- public:
-  explicit Robots(size_t count) : actions_(count), recorders_(count), frames_(count) {}
-
-  void set_actions(const screed_action* actions) {
-    std::copy_n(actions, actions_.size(), actions_.begin());
-  }
-  const SimFrame& frame(size_t robot) const { return frames_[robot]; }
-
-  void on_output(size_t robot, RobotOutput& output) override {
-    const screed_action& action = actions_[robot];
-    if (action.control != SCREED_DUTY) return;
-    const auto duty = [&](double share) {
-      return static_cast<int16_t>(std::lround(share * kDutyMax));
-    };
-    output.duty_left = duty(action.values[0]);
-    output.duty_right = duty(action.values[1]);
-  }
-  void record(const World& world) {
-    for (size_t i = 0; i < frames_.size(); ++i)
-      frames_[i] = recorders_[i].record(world.time_s(), world.plant().robot(i), world.firmware(i));
-  }
-
- private:
-  std::vector<screed_action> actions_;
-  std::vector<FrameRecorder> recorders_;
-  std::vector<SimFrame> frames_;
-};
-
-std::span<const Column> columns_of(int table) {
-  switch (table) {
-    case SCREED_FRAMES:
-      return kFrameColumns;
-    case SCREED_SAMPLES:
-      return kSampleColumns;
-    case SCREED_OUTPUTS:
-      return kOutputColumns;
-    default:
-      return {};
-  }
-}
-
-void check(const screed_action& action) {
-  if (action.control == SCREED_FIRMWARE) return;
-  if (action.control == SCREED_COMMAND) {
-    constexpr double kMaxYawRate = 2.0 * std::numbers::pi;
-    require(std::abs(action.values[0]) <= 1.0, "speed", action.values[0], "-1 to 1 m/s");
-    require(std::abs(action.values[1]) <= kMaxYawRate, "yaw rate", action.values[1],
-            "-6.28 to 6.28 rad/s");
-  } else if (action.control == SCREED_DUTY) {
-    for (const double share : action.values)
-      require(std::abs(share) <= 1.0, "duty", share, "-1 to 1");
-  } else {
-    throw InputError("control = " + std::to_string(action.control) +
-                     "; allowed: 0 to 2 (screed_control)");
-  }
-}
-
-}  // namespace
-
 struct screed_world : Handle {
-  explicit screed_world(PreparedWorld of) : prepared(std::move(of)) { begin(); }
-  void begin() {
-    world = make_standin_world(prepared);
-    robots.emplace(world->robots());
-  }
-
-  PreparedWorld prepared;
-  std::unique_ptr<World> world;
-  std::optional<Robots> robots;
+  screed_world(std::shared_ptr<const PreparedWorld> prepared, uint64_t seed)
+      : its(std::move(prepared), seed) {}
+  ToldWorld its;
 };
 
 screed_world* screed_world_create(const void* prepared, size_t size, uint64_t seed,
@@ -106,9 +23,9 @@ screed_world* screed_world_create(const void* prepared, size_t size, uint64_t se
   screed_world* world = nullptr;
   attempt(error, [&] {
     require_pointer(prepared, "prepared");
-    PreparedWorld its = prepared_from({static_cast<const char*>(prepared), size});
-    set_seed(seed, its);
-    world = new screed_world(std::move(its));
+    world = new screed_world(std::make_shared<const PreparedWorld>(prepared_from(
+                                 std::string_view(static_cast<const char*>(prepared), size))),
+                             seed);
   });
   return world;
 }
@@ -116,8 +33,7 @@ screed_world* screed_world_create(const void* prepared, size_t size, uint64_t se
 screed_status screed_world_reset(screed_world* world, uint64_t seed, screed_error* error) {
   return attempt(error, [&] {
     const Use use(world, "world");
-    set_seed(seed, world->prepared);
-    world->begin();
+    world->its.reset(seed);
   });
 }
 
@@ -126,32 +42,22 @@ void screed_world_destroy(screed_world* world) {
 }
 
 int screed_world_robots(const screed_world* world) {
-  return world == nullptr ? 0 : static_cast<int>(world->world->robots());
+  return world == nullptr ? 0 : static_cast<int>(world->its.world().robots());
 }
 
 uint64_t screed_world_ticks(const screed_world* world) {
-  return world == nullptr ? 0 : world->world->ticks();
+  return world == nullptr ? 0 : world->its.world().ticks();
 }
 
 screed_status screed_world_advance(screed_world* world, int ticks, const screed_action* actions,
                                    screed_error* error) {
   return attempt(error, [&] {
     const Use use(world, "world");
-    require(ticks >= 1 && ticks <= kMaxTicks, "ticks", ticks, "1 to 1000000");
-    World& its = *world->world;
-    if (actions != nullptr) {
-      for (size_t i = 0; i < its.robots(); ++i) check(actions[i]);
-      world->robots->set_actions(actions);
-      for (size_t i = 0; i < its.robots(); ++i) {
-        if (actions[i].control != SCREED_COMMAND) continue;
-        its.ground_station(i).drive(
-            {actions[i].values[0], actions[i].values[1] * 180.0 / std::numbers::pi});
-      }
-    }
-    for (int tick = 0; tick < ticks; ++tick) {
-      its.advance(&*world->robots);
-      world->robots->record(its);
-    }
+    check_ticks(ticks);
+    std::span<const screed_action> of_robots;
+    if (actions != nullptr) of_robots = {actions, world->its.world().robots()};
+    check_actions(of_robots);
+    world->its.advance(ticks, of_robots);
   });
 }
 
@@ -175,21 +81,12 @@ screed_status screed_world_row(const screed_world* world, int robot, int table, 
   return attempt(error, [&] {
     const Use use(world, "world");
     require_pointer(row, "row");
-    const World& its = *world->world;
+    check_table(table);
+    const World& its = world->its.world();
     require(robot >= 0 && static_cast<size_t>(robot) < its.robots(), "robot", robot,
             "numbers of robots");
     if (its.ticks() == 0) throw InputError("row: the world has not lived a tick");
-    const auto number = static_cast<size_t>(robot);
-    auto* bytes = static_cast<uint8_t*>(row);
-    if (table == SCREED_FRAMES) {
-      pack(world->robots->frame(number), FrameRow(bytes, kFrameBytes));
-    } else if (table == SCREED_SAMPLES) {
-      pack(its.sample(number), SampleRow(bytes, kSampleBytes));
-    } else if (table == SCREED_OUTPUTS) {
-      pack(its.output(number), OutputRow(bytes, kOutputBytes));
-    } else {
-      throw InputError("table = " + std::to_string(table) + "; allowed: 0 to 2 (screed_table)");
-    }
+    world->its.copy_row(static_cast<size_t>(robot), table, static_cast<uint8_t*>(row));
   });
 }
 
@@ -198,14 +95,7 @@ screed_status screed_world_level(const screed_world* world, int with_transport, 
   return attempt(error, [&] {
     const Use use(world, "world");
     require_pointer(level, "level");
-    const HeightField& ground = world->world->terrain();
-    const RobotScaleFigures figures = robot_scale_figures(ground, 0.0);
-    *level = {figures.level_deviation_m, figures.relief_m, figures.roughness_m, std::nan(""),
-              std::nan("")};
-    if (with_transport == 0) return;
-    const GroundBlocks blocks = ground_blocks(ground);
-    level->transport = least_transport(blocks);
-    level->transport_squared = least_squared_transport(blocks);
+    *level = world->its.level(with_transport != 0);
   });
 }
 
@@ -215,7 +105,7 @@ screed_status screed_world_bed(const screed_world* world, screed_rectangle* node
     const Use use(world, "world");
     require_pointer(nodes, "nodes");
     require_pointer(spacing, "spacing");
-    const HeightField& ground = world->world->terrain();
+    const HeightField& ground = world->its.world().terrain();
     *nodes = {0, 0, ground.nx(), ground.ny()};
     *spacing = ground.spacing_m();
   });
@@ -225,6 +115,6 @@ screed_status screed_world_heights(const screed_world* world, const screed_recta
                                    double* heights, screed_error* error) {
   return attempt(error, [&] {
     const Use use(world, "world");
-    copy_heights(world->world->terrain(), part, heights);
+    copy_heights(world->its.world().terrain(), part, heights);
   });
 }

@@ -31,18 +31,24 @@ strict=(gcc -std=c99 -Wall -Wextra -pedantic -Werror)
 # What programs may rely on: the names of the headers, and no library but the compiler's.
 names_in() { grep -ohE 'screed_[a-z_]+\(' "$@" | tr -d '(' | LC_ALL=C sort -u; }
 foreign='! readelf -d "$0" | grep NEEDED | grep -vE "\[(libstdc\+\+|libm|libgcc_s|libc|ld-linux.*)\.so"'
-for it in soil core; do
-  names_in "$tree"/moved/include/screed/$([ $it = core ] && echo '*' || echo $it).h > "$tree/header"
-  for file in "$library/libscreed-$it.so" "$library/libscreed-$it.a"; do
+headers() { (cd "$tree/moved/include/screed" && cat "$@") > "$tree/headers"; }
+for it in screed-soil screed-core screed; do
+  case $it in screed-soil) headers soil.h ;; screed-core) headers soil.h world.h ;; *) headers soil.h world.h run.h ;; esac
+  names_in "$tree/headers" > "$tree/header"
+  for file in "$library/lib$it".so "$library/lib$it".a; do
+    [ -e "$file" ] || continue
     nm "$([[ $file = *.so ]] && echo -D || echo -g)" --defined-only "$file" |
       awk '$2 == "T" { sub(/@.*/, "", $3); print $3 }' | LC_ALL=C sort > "$tree/names"
     check "names of $(basename "$file")" diff "$tree/header" "$tree/names"
   done
-  check "libscreed-$it needs no library but the compiler's" bash -c "$foreign" "$library/libscreed-$it.so"
-  check "nothing else of the program is left in libscreed-$it" \
-    bash -c '! nm -C "$0" | grep -E "H5[A-Z]|\b(dBody|dWorld|avr_|cairo_|CLI::)"' "$library/libscreed-$it.a"
 done
-printf '#include <screed/soil.h>\n#include <screed/world.h>\n' > "$tree/header.cpp"
+check 'libscreed needs no simavr' bash -c '! readelf -d "$0" | grep simavr' "$library/libscreed.so"
+for it in screed-soil screed-core; do
+  check "lib$it needs no library but the compiler's" bash -c "$foreign" "$library/lib$it.so"
+  check "nothing else of the program is left in lib$it" \
+    bash -c '! nm -C "$0" | grep -E "H5[A-Z]|\b(dBody|dWorld|avr_|cairo_|CLI::)"' "$library/lib$it.a"
+done
+printf '#include <screed/soil.h>\n#include <screed/run.h>\n' > "$tree/header.cpp"
 check 'the headers alone, as C++' g++ -std=c++11 -Wall -Wextra -pedantic -Werror "${soil[@]:0:1}" -fsyntax-only \
   "$tree/header.cpp"
 

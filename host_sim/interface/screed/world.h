@@ -58,7 +58,8 @@ SCREED_API screed_status screed_world_advance(screed_world* world, int ticks,
 typedef enum screed_table {
   SCREED_FRAMES = 0,  /* the truth; under est_... and odometry_... what the firmware thinks */
   SCREED_SAMPLES = 1, /* what the firmware has read of its sensors, in their counts */
-  SCREED_OUTPUTS = 2  /* what it has answered */
+  SCREED_OUTPUTS = 2, /* what it has answered */
+  SCREED_LEVELING = 3 /* how level the bed is; in recorded runs alone */
 } screed_table;
 
 typedef enum screed_type {

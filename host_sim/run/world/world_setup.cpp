@@ -191,6 +191,12 @@ int threads_of_environment() {
 
 }  // namespace
 
+EnvironmentFactory stand_in_environment() {
+  return [](HeightField terrain, const Assembly& robot, const PlantOptions& options) {
+    return std::make_unique<StandInPlant>(terrain, robot, options);
+  };
+}
+
 ParticleOptions make_particles(const Experiment& experiment) {
   ParticleOptions particles;
   particles.threads = threads_of_environment();

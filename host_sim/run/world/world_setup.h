@@ -42,6 +42,8 @@ struct WorldSetup {
   TaskProgress progress = nullptr;           ///< of laying and settling; may be empty, may end it
 };
 
+/// That of the stand-in.
+EnvironmentFactory stand_in_environment();
 /// The soil an experiment asks for: the preset and what differs from it. Throws InputError.
 SoilParameters make_soil(const Experiment& experiment);
 /// The particles of an experiment on such a bed, computed in as many threads as the environment's

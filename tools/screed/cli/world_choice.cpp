@@ -6,6 +6,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/run/world/image_robot.h"
+#include "host_sim/run/world/world_setup.h"
 #include "host_sim/standin/standin_plant.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/surrogate_plant.h"
@@ -28,11 +29,6 @@ EnvironmentFactory networks_world(const WorldChoice& choice) {
   };
 }
 
-std::unique_ptr<Environment> stand_in(const HeightField& terrain, const Assembly& robot,
-                                      const PlantOptions& plant) {
-  return std::make_unique<StandInPlant>(terrain, robot, plant);
-}
-
 }  // namespace
 
 void choose_world(const WorldChoice& choice, SimulationOptions& options) {
@@ -53,7 +49,7 @@ void choose_world(const WorldChoice& choice, SimulationOptions& options) {
   } else if (choice.terrain_net.has_value()) {
     throw InputError("--terrain-net needs --hal surrogate with --model");
   } else if (choice.hal == "surrogate") {
-    options.environment = stand_in;
+    options.environment = stand_in_environment();
     options.least_cell_m = kStandInCell_m;
   }
 }

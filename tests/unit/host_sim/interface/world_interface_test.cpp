@@ -170,7 +170,7 @@ TEST(WorldInterface, ColumnsDescribeARow) {
   }
   EXPECT_EQ(static_cast<size_t>(end), screed_table_row(SCREED_SAMPLES));
   EXPECT_EQ(number, static_cast<int>(kSampleColumns.size()));
-  EXPECT_EQ(screed_table_row(3), 0U);
+  EXPECT_EQ(screed_table_row(4), 0U);
 }
 
 TEST(WorldInterface, LevelIsThatOfTheMetrics) {
@@ -226,7 +226,7 @@ TEST(WorldInterface, WhatIsNotAllowedIsRefused) {
   EXPECT_EQ(read(0, 0), "row: the world has not lived a tick");
   advance(world, 1);
   EXPECT_EQ(read(2, 0), "robot = 2; allowed: numbers of robots");
-  EXPECT_EQ(read(0, 3), "table = 3; allowed: 0 to 2 (screed_table)");
+  EXPECT_EQ(read(0, 3), "table = 3; allowed: 0 to 2 (screed_table, without SCREED_LEVELING)");
   EXPECT_EQ(
       refusal([](screed_error* error) { return screed_world_advance(nullptr, 1, nullptr, error); }),
       "world: a null pointer");
