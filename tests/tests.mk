@@ -65,8 +65,8 @@ $(B)/tests/test_file: $(call objects,$(wildcard $(TEST)) $(filter-out %_test.cpp
   $(B)/link.flags FORCE
 	$(if $(wildcard $(TEST)),,$(error TEST='FILE...' names sources of tests; there is none of the name '$(TEST)'))
 	$(call link_tests)
-test-tutorial: $(SCREED)  ## the commands of docs/tutorial.md and two others, from top to bottom, in a copy of the tree
-	@for page in tutorial soil-library world-library ; do tests/docs/tutorial.sh docs/$$page.md ; done
+test-tutorial: $(SCREED)  ## the commands of the tutorial and of three other pages, in a copy of the tree
+	@for page in tutorial soil-library world-library python ; do tests/docs/tutorial.sh docs/$$page.md ; done
 
 .PHONY: test-install
 test-install: $(SCREED) $(REPORT_PAGE) $(INTERFACE_LIBRARIES)  ## install, move the tree, run it from elsewhere

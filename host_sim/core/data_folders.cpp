@@ -25,7 +25,7 @@ fs::path this_file() {
   Dl_info info{};
   std::error_code error;
   if (dladdr(&kHere, &info) != 0) {
-    const fs::path file = fs::canonical(info.dli_fname, error);
+    fs::path file = fs::canonical(info.dli_fname, error);
     if (file.filename().string().find(".so") != std::string::npos) return file;
   }
   return fs::read_symlink("/proc/self/exe", error);

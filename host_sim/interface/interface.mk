@@ -44,13 +44,16 @@ INTERFACE_LIBRARIES := $(INTERFACE_SHARED) $(INTERFACE_STATIC) $(INTERFACE_PC)
 
 .PHONY: libraries install-libraries test-interface
 libraries: $(INTERFACE_LIBRARIES)  ## build/<BUILD>/libscreed-soil, -core and libscreed, for other programs (C)
-INSTALLED_LIBRARIES := include/screed $(addprefix lib/,$(addprefix pkgconfig/,$(notdir $(INTERFACE_PC))) \
+INSTALLED_MODULE := lib/python3/dist-packages/screed
+INSTALLED_LIBRARIES := $(INSTALLED_MODULE) include/screed \
+  $(addprefix lib/,$(addprefix pkgconfig/,$(notdir $(INTERFACE_PC))) \
   $(notdir $(INTERFACE_SHARED) $(basename $(INTERFACE_SHARED)) $(INTERFACE_STATIC)))
 install: install-libraries
-install-libraries: $(INTERFACE_LIBRARIES)  ## install the C libraries alone (PREFIX=/usr/local)
+install-libraries: $(INTERFACE_LIBRARIES)  ## install the C libraries and the Python module alone (PREFIX=/usr/local)
 	install -D -m 644 -t $(INTO)/include/screed $(INTERFACE_HEADERS)
 	install -D -m 644 -t $(INTO)/lib $(INTERFACE_SHARED) $(INTERFACE_STATIC)
 	for it in $(notdir $(INTERFACE_SHARED)) ; do ln -sfn $$it $(INTO)/lib/$${it%.*} ; done
 	install -D -m 644 -t $(INTO)/lib/pkgconfig $(INTERFACE_PC)
+	install -D -m 644 -t $(INTO)/$(INSTALLED_MODULE) $(wildcard tools/python/screed/*.py)
 test-interface: $(INTERFACE_LIBRARIES) $(SCREED)  ## the C libraries as installed: names, examples with ODE and MuJoCo
 	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/interface/run.sh

@@ -32,6 +32,8 @@ END
 sed -i "s|PAGE|$page|" "$folder/main.sh"
 cd "$folder/screed"
 # Sourced, so that LINENO counts the page's lines. No display: windows have no place in it.
+# Debian's programs come first, as on a reader's machine.
+export PATH="/usr/bin:$PATH"
 if env -u DISPLAY -u WAYLAND_DISPLAY DEPS=no bash -c 'set -m; . "$0"; . "$1"' "$folder/main.sh" "$folder/commands.sh" \
   > "$folder/log" 2>&1 < /dev/null; then
   echo "$page: $(grep -c . "$folder/commands.sh") lines of commands ran"

@@ -33,7 +33,11 @@ names_in() { grep -ohE 'screed_[a-z_]+\(' "$@" | tr -d '(' | LC_ALL=C sort -u; }
 foreign='! readelf -d "$0" | grep NEEDED | grep -vE "\[(libstdc\+\+|libm|libgcc_s|libc|ld-linux.*)\.so"'
 headers() { (cd "$tree/moved/include/screed" && cat "$@") > "$tree/headers"; }
 for it in screed-soil screed-core screed; do
-  case $it in screed-soil) headers soil.h ;; screed-core) headers soil.h world.h ;; *) headers soil.h world.h run.h ;; esac
+  case $it in
+    screed-soil) headers soil.h ;;
+    screed-core) headers soil.h world.h ;;
+    *) headers soil.h world.h run.h ;;
+  esac
   names_in "$tree/headers" > "$tree/header"
   for file in "$library/lib$it".so "$library/lib$it".a; do
     [ -e "$file" ] || continue

@@ -188,7 +188,8 @@ class Vectors(unittest.TestCase):
                 env.step(wrong)
         with self.assertRaisesRegex(screed.InputError, "seeds of shape"):
             env.reset(seed=[1, 2])
-        for more, text in (({"n": 10**9}, "allowed: 1 to 65536"), ({"n": 0}, "n = 0"), ({"hal": "native"}, "allowed: surrogate"),
+        for more, text in (({"n": 10**9}, "allowed: 1 to 65536"), ({"n": 0}, "n = 0"),
+                           ({"hal": "native"}, "allowed: surrogate"),
                            ({"action": "fly"}, "allowed: command, duty"), ({"autoreset": "no"}, "next_step")):
             with self.assertRaisesRegex(screed.InputError, text):
                 screed.VectorEnv("level_bed", **{"n": 1, **more})

@@ -1,11 +1,15 @@
 // The stand-in judged beside recorded drives, as its page says: a short drive of the shipped table.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "host_sim/core/data_folders.h"
+#include "host_sim/run/world/prepared_world.h"
 #include "paths.h"
 #include "tests/sitl/program.h"
 
@@ -64,6 +68,20 @@ TEST_F(StandIn, ItsRolloutsStandBesideBaselinesOfTheVeryDrive) {
     EXPECT_GT(std::stoi(found[1]), 0) << result.out;
     EXPECT_LT(std::stod(found[2]), 10.0) << result.out;
   }
+}
+
+TEST_F(StandIn, APreparedWorldIsOneFileOrNone) {
+  const Result result = run("prepare level_bed --set robots.count=2 --out two.world");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  std::ifstream file(root_ / "two.world", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(prepared_from(bytes).options.robots.size(), 2U);
+  expect_refused(run("prepare level_bed"), 2, {"--out"});
+  expect_refused(run("prepare gravel_bed --out a.world"), 2, {"soil"});
+  expect_refused(run("prepare four_wheels --out a.world"), 2, {"tracks"});
+  expect_refused(run("prepare no_such --out a.world"), 2, {"no_such"});
+  expect_refused(run("prepare level_bed --out missing/a.world"), 1, {"missing/a.world"});
+  EXPECT_FALSE(std::filesystem::exists(root_ / "a.world"));
 }
 
 // The stand-in drives no wheels: there a network stands beside the baselines.

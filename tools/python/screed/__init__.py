@@ -8,5 +8,5 @@ from .runs import Run, Session, sim
 from .worlds import World, Worlds, prepare
 
 __version__ = _library.library.soil_version().decode()
-__all__ = ["BusyError", "Error", "InputError", "ParallelEnv", "Run", "Session", "VectorEnv", "World", "Worlds", "prepare", "sim",
-           "vec_env"]
+__all__ = ["BusyError", "Error", "InputError", "ParallelEnv", "Run", "Session", "VectorEnv", "World", "Worlds",
+           "prepare", "sim", "vec_env"]

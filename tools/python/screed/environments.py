@@ -153,8 +153,9 @@ class VectorEnv(_Base):
 
     def __init__(self, experiment: str | os.PathLike = "level_bed", n: int = 16, *, hal: str = "surrogate",
                  set: Mapping[str, Any] | None = None, action: str = "command", ticks: int = 10,
-                 duration: float = 600.0, reward_every: int = 10, reward: Callable[[Worlds], Sequence[float]] | None = None,
-                 autoreset: str = "next_step", threads: int | None = None, copy: bool = True):
+                 duration: float = 600.0, reward_every: int = 10,
+                 reward: Callable[[Worlds], Sequence[float]] | None = None, autoreset: str = "next_step",
+                 threads: int | None = None, copy: bool = True):
         if hal != "surrogate":
             raise lib.InputError(f"hal = {hal!r}; allowed: surrogate")
         if autoreset not in ("next_step", "same_step", "disabled"):
@@ -329,7 +330,8 @@ class ParallelEnv:
         over = bool(self._episodes.step[0] >= self._episodes.steps)
         result = (self._observations(), self._of_agents([float(rewards[0])] * len(values)),
                   self._of_agents(faults.tolist()), self._of_agents([over] * len(values)), self._infos())
-        self.agents = [] if over else [a for i, a in enumerate(self.possible_agents) if a in self.agents and not faults[i]]
+        alive = self._of_agents(~faults)
+        self.agents = [agent for agent in self.agents if alive[agent] and not over]
         return result
 
     def state(self) -> np.ndarray:

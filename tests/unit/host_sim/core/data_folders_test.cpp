@@ -35,6 +35,12 @@ TEST_F(DataFoldersTest, AnInstalledProgramsDataStandsBesideIt) {
   EXPECT_EQ(folders.report, tree / "share/screed/report");
 }
 
+TEST_F(DataFoldersTest, ALibraryOfOneKindOfProcessorLiesAFolderDeeper) {
+  const fs::path tree = installed("moved");
+  for (const char* folder : {"lib", "lib/x86_64-linux-gnu"})
+    EXPECT_EQ(find_data_folders("", tree / folder / "libscreed.so.0").data, tree / "share/screed");
+}
+
 TEST_F(DataFoldersTest, ThatOfTheSourcesServesAProgramWhereItWasBuilt) {
   const DataFolders folders = find_data_folders("", "/somewhere/build/release/screed");
   EXPECT_EQ(folders.data, kDataFolder);
