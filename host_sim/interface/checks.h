@@ -43,30 +43,35 @@ class Use {
   const Handle* handle_;
 };
 
-inline void say(screed_error* error, const char* text) {
-  if (error != nullptr) std::snprintf(error->text, sizeof(error->text), "%s", text);
+inline screed_status say(screed_error* error, screed_status status, const char* text) {
+  if (error != nullptr) {
+    error->status = status;
+    std::snprintf(error->text, sizeof(error->text), "%s", text);
+  }
+  return status;
 }
 
 /// Does the work; whatever it throws becomes a status and a text.
 template <typename Work>
 screed_status attempt(screed_error* error, const Work& work) noexcept {
-  say(error, "");
   try {
     work();
-    return SCREED_OK;
+    return say(error, SCREED_OK, "");
   } catch (const Busy& busy) {
-    say(error, busy.what());
-    return SCREED_BUSY;
+    return say(error, SCREED_BUSY, busy.what());
   } catch (const InputError& wrong) {
-    say(error, wrong.what());
-    return SCREED_BAD_INPUT;
+    return say(error, SCREED_BAD_INPUT, wrong.what());
   } catch (const std::bad_alloc&) {
-    say(error, "not enough memory");
-    return SCREED_NO_MEMORY;
+    return say(error, SCREED_NO_MEMORY, "not enough memory");
   } catch (const std::exception& failed) {
-    say(error, failed.what());
-    return SCREED_FAILED;
+    return say(error, SCREED_FAILED, failed.what());
   }
+}
+
+/// Unless another thread is at work with it.
+template <typename Of>
+void destroy(Of* handle) noexcept {
+  if (handle != nullptr && !handle->in_use.test_and_set(std::memory_order_acquire)) delete handle;
 }
 
 /// Throws InputError "what = value; allowed: range".

@@ -126,7 +126,7 @@ screed_session* screed_session_open(const char* run, int robot, screed_error* er
 }
 
 void screed_session_close(screed_session* session) {
-  delete session;
+  destroy(session);
 }
 
 screed_status screed_session_info(const screed_session* session, screed_bytes* info,

@@ -59,9 +59,10 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-Eigen::Vector3d vector_from(const double* from, const char* what) {
+Eigen::Vector3d vector_from(const double* from, const char* what, double greatest,
+                            const char* range) {
   Eigen::Vector3d vector = Eigen::Map<const Eigen::Vector3d>(from);
-  for (const double part : vector) require(std::isfinite(part), what, part, "finite numbers");
+  for (const double part : vector) require(std::abs(part) <= greatest, what, part, range);
   return vector;
 }
 
@@ -115,7 +116,7 @@ Footprint footprint_of(const screed_patch& patch) {
       return Footprint::track(0.5 * size[2], size[0], size[1]);
     case SCREED_BOX:
       need(3);
-      return Footprint::box(vector_from(size, "size"));
+      return Footprint::box(Eigen::Map<const Eigen::Vector3d>(size));
     case SCREED_DISC:
       need(2);
       return Footprint::disc(size[0], size[1]);
@@ -281,7 +282,7 @@ screed_soil* screed_soil_create(const screed_bed* bed, const char* preset,
 }
 
 void screed_soil_destroy(screed_soil* soil) {
-  delete soil;
+  destroy(soil);
 }
 
 const char* screed_soil_preset(size_t index) {
@@ -337,19 +338,22 @@ screed_status screed_soil_press(screed_soil* soil, int body, const screed_body_m
     require_pointer(wrenches, "wrenches");
     require(dt >= 1e-5 && dt <= 0.02, "dt", dt, "0.00001 to 0.02 s");
     require(motion->mass >= 1e-6, "mass", motion->mass, "0.000001 kg and more");
+    const HeightField& field = soil->bed.surface();
+    const double farthest = 10.0 * std::max(field.x_max(), field.y_max());
     PressingBody pressing;
     pressing.mass_kg = motion->mass;
     pressing.inverse_inertia = inverse_inertia_from(motion->inertia);
-    pressing.centre = vector_from(motion->centre, "centre");
-    pressing.velocity = vector_from(motion->velocity, "velocity");
-    pressing.omega = vector_from(motion->omega, "omega");
+    pressing.centre = vector_from(motion->centre, "centre", farthest, "within ten beds, m");
+    pressing.velocity = vector_from(motion->velocity, "velocity", 1e3, "-1000 to 1000 m/s");
+    pressing.omega = vector_from(motion->omega, "omega", 1e4, "-10000 to 10000 rad/s");
     Body& its = soil->bodies[static_cast<size_t>(body)];
     std::vector<Eigen::Isometry3d> poses(its.footprints.size(), Eigen::Isometry3d::Identity());
     for (size_t i = 0; i < poses.size(); ++i) {
       poses[i].linear() = rotation_from(patches[i].axes);
-      poses[i].translation() = vector_from(patches[i].position, "position");
-      require(std::isfinite(patches[i].surface_speed), "surface_speed", patches[i].surface_speed,
-              "finite numbers");
+      poses[i].translation() =
+          vector_from(patches[i].position, "position", farthest, "within ten beds, m");
+      require(std::abs(patches[i].surface_speed) <= 1e3, "surface_speed", patches[i].surface_speed,
+              "-1000 to 1000 m/s");
     }
     for (size_t i = 0; i < poses.size(); ++i) {
       its.footprints[i].set_pose(poses[i]);
@@ -386,7 +390,12 @@ screed_status screed_soil_end_step(screed_soil* soil, screed_error* error) {
 }
 
 double screed_soil_height(const screed_soil* soil, double x, double y) {
-  return soil == nullptr ? std::nan("") : soil->bed.surface().at(x, y).height;
+  double height = std::nan("");
+  attempt(nullptr, [&] {
+    const Use use(soil, "soil");
+    height = soil->bed.surface().at(x, y).height;
+  });
+  return height;
 }
 
 screed_status screed_soil_heights(const screed_soil* soil, const screed_rectangle* part,

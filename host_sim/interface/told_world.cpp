@@ -10,6 +10,7 @@
 #include "hal/sample.h"
 #include "host_sim/interface/checks.h"
 #include "host_sim/leveling/leveling_meter.h"
+#include "schema/class_values.h"
 
 namespace screed::interface {
 namespace {
@@ -47,10 +48,6 @@ std::span<const Column> columns_of(int table) {
   }
 }
 
-void check_actions(std::span<const screed_action> actions) {
-  for (const screed_action& action : actions) check_action(action);
-}
-
 void check_ticks(int ticks) {
   require(ticks >= 1 && ticks <= 1000000, "ticks", ticks, "1 to 1000000");
 }
@@ -65,6 +62,22 @@ void check_table(int table) {
 ToldWorld::ToldWorld(std::shared_ptr<const PreparedWorld> prepared, uint64_t seed)
     : prepared_(std::move(prepared)) {
   reset(seed);
+}
+
+void ToldWorld::check_seed(uint64_t seed) const {
+  if (prepared_->one_seed.empty()) return;
+  PreparedWorld its = *prepared_;
+  set_seed(seed, its);
+}
+
+void ToldWorld::check_actions(std::span<const screed_action> actions) const {
+  for (size_t i = 0; i < actions.size(); ++i) {
+    check_action(actions[i]);
+    const int16_t algorithm = world_->robot(i).settings().parameters.algorithm();
+    if (actions[i].control == SCREED_COMMAND &&
+        algorithm != static_cast<int16_t>(LevelingAlgorithm::kDrive))
+      throw InputError("control = 1, a command: needs [experiment] algorithm = drive");
+  }
 }
 
 void ToldWorld::reset(uint64_t seed) {
@@ -93,11 +106,14 @@ void ToldWorld::record() {
 }
 
 void ToldWorld::advance(int ticks, std::span<const screed_action> actions) {
-  std::copy(actions.begin(), actions.end(), actions_.begin());
   for (size_t i = 0; i < actions.size(); ++i) {
+    GroundStation& station = world_->ground_station(i);
     if (actions[i].control == SCREED_COMMAND) {
-      world_->ground_station(i).drive({actions[i].values[0], actions[i].values[1] * kDegPerRad});
+      station.drive(DriveCommand{actions[i].values[0], actions[i].values[1] * kDegPerRad});
+    } else if (actions_[i].control == SCREED_COMMAND) {
+      station.drive(prepared_->options.robots[i].drive);
     }
+    actions_[i] = actions[i];
   }
   for (int left = ticks; left > 0; --left) {
     world_->advance(this);

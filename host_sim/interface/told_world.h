@@ -25,9 +25,14 @@ class ToldWorld final : private RobotWatch {
   ToldWorld(const ToldWorld&) = delete;
   ToldWorld& operator=(const ToldWorld&) = delete;
 
+  /// Throws InputError for a seed that it cannot have.
+  void check_seed(uint64_t seed) const;
   /// As it was made, of another seed.
   void reset(uint64_t seed);
-  /// One action a robot, or none for nothing new; they are allowed (check_actions()).
+  /// One action a robot, or none for nothing new. Throws InputError where one is not allowed.
+  void check_actions(std::span<const screed_action> actions) const;
+  /// They are allowed. Throws RunError as World::advance(), and when a robot has had all commands
+  /// that it takes.
   void advance(int ticks, std::span<const screed_action> actions);
   /// A robot's newest row, of row_bytes(columns_of(table)) bytes; zeros before the first tick.
   void copy_row(size_t robot, int table, uint8_t* row) const;
@@ -48,8 +53,7 @@ class ToldWorld final : private RobotWatch {
 
 /// Of a table, or none.
 std::span<const Column> columns_of(int table);
-/// Throws InputError.
-void check_actions(std::span<const screed_action> actions);
+/// Throw InputError.
 void check_ticks(int ticks);
 /// Of a world: not SCREED_LEVELING.
 void check_table(int table);

@@ -38,15 +38,19 @@ screed_status screed_world_reset(screed_world* world, uint64_t seed, screed_erro
 }
 
 void screed_world_destroy(screed_world* world) {
-  delete world;
+  destroy(world);
 }
 
 int screed_world_robots(const screed_world* world) {
   return world == nullptr ? 0 : static_cast<int>(world->its.world().robots());
 }
 
-uint64_t screed_world_ticks(const screed_world* world) {
-  return world == nullptr ? 0 : world->its.world().ticks();
+screed_status screed_world_ticks(const screed_world* world, uint64_t* ticks, screed_error* error) {
+  return attempt(error, [&] {
+    const Use use(world, "world");
+    require_pointer(ticks, "ticks");
+    *ticks = world->its.world().ticks();
+  });
 }
 
 screed_status screed_world_advance(screed_world* world, int ticks, const screed_action* actions,
@@ -56,7 +60,7 @@ screed_status screed_world_advance(screed_world* world, int ticks, const screed_
     check_ticks(ticks);
     std::span<const screed_action> of_robots;
     if (actions != nullptr) of_robots = {actions, world->its.world().robots()};
-    check_actions(of_robots);
+    world->its.check_actions(of_robots);
     world->its.advance(ticks, of_robots);
   });
 }

@@ -27,16 +27,14 @@ namespace {
 class Crew {
  public:
   explicit Crew(int threads) {
-    for (int i = 1; i < threads; ++i) threads_.emplace_back([this] { serve(); });
-  }
-  ~Crew() {
-    {
-      const std::lock_guard lock(mutex_);
-      over_ = true;
+    try {
+      for (int i = 1; i < threads; ++i) threads_.emplace_back([this] { serve(); });
+    } catch (...) {  // the machine has no more of them
+      dismiss();
+      throw;
     }
-    called_.notify_all();
-    for (std::thread& thread : threads_) thread.join();
   }
+  ~Crew() { dismiss(); }
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;
 
@@ -60,6 +58,14 @@ class Crew {
   }
 
  private:
+  void dismiss() {
+    {
+      const std::lock_guard lock(mutex_);
+      over_ = true;
+    }
+    called_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
   void take_part() {
     for (size_t i = next_++; i < count_; i = next_++) {
       try {
@@ -128,7 +134,7 @@ screed_worlds* screed_worlds_create(const void* prepared, size_t size, const uin
 }
 
 void screed_worlds_destroy(screed_worlds* worlds) {
-  delete worlds;
+  destroy(worlds);
 }
 
 int screed_worlds_robots(const screed_worlds* worlds) {
@@ -142,6 +148,8 @@ screed_status screed_worlds_reset(screed_worlds* worlds, const uint8_t* which,
     require_pointer(which, "which");
     require_pointer(seeds, "seeds");
     if (ticks != 0) check_ticks(ticks);
+    for (size_t i = 0; i < worlds->worlds.size(); ++i)
+      if (which[i] != 0) worlds->worlds[i]->check_seed(seeds[i]);
     worlds->crew.run(worlds->worlds.size(), [&](size_t i) {
       if (which[i] == 0) return;
       worlds->worlds[i]->reset(seeds[i]);
@@ -156,7 +164,10 @@ screed_status screed_worlds_advance(screed_worlds* worlds, int ticks, const scre
     const Use use(worlds, "worlds");
     check_ticks(ticks);
     const size_t robots = worlds->robots();
-    if (actions != nullptr) check_actions({actions, worlds->worlds.size() * robots});
+    if (actions != nullptr) {
+      for (size_t i = 0; i < worlds->worlds.size(); ++i)
+        worlds->worlds[i]->check_actions({actions + i * robots, robots});
+    }
     worlds->crew.run(worlds->worlds.size(), [&](size_t i) {
       std::span<const screed_action> its;
       if (actions != nullptr) its = {actions + i * robots, robots};

@@ -136,6 +136,24 @@ class Vectors(unittest.TestCase):
         np.testing.assert_array_equal(observed(1, 1), observed(1, 3))
         self.assertTrue((observed(1, 1) != observed(2, 1)).any())
 
+    def test_seeds_may_be_given_for_each_world_and_decide_what_comes_after(self):
+        env = self.make()
+        seeds = [env.reset(seed=[5, None, 7])[1]["seed"] for _ in range(2)]
+        np.testing.assert_array_equal(*seeds)
+        self.assertEqual((seeds[0][0], seeds[0][2]), (5, 7))
+        again = [(env.reset(seed=3), self.drive(env, 12))[1][-1][4]["seed"] for _ in range(2)]
+        np.testing.assert_array_equal(*again)
+
+    def test_all_are_reset_before_some(self):
+        env = self.make()
+        with self.assertRaisesRegex(screed.InputError, "before all were reset"):
+            env.reset(options={"reset_mask": [True, False, False]})
+        env.reset(seed=1)
+        first = self.drive(env, 3)[-1]
+        observation, infos = env.reset(options={"reset_mask": [True, False, False]})
+        np.testing.assert_array_equal(observation[1:], first[0][1:])
+        self.assertEqual(infos["truth"]["linear"].tolist(), [0.0, 0.2, 0.2])
+
     def test_next_step_resets_with_the_step_after_the_end(self):
         env = self.make()
         env.reset(seed=1)
@@ -186,10 +204,12 @@ class Vectors(unittest.TestCase):
                             (np.full((3, 2), np.nan), "no numbers")):
             with self.assertRaisesRegex(screed.InputError, text):
                 env.step(wrong)
-        with self.assertRaisesRegex(screed.InputError, "seeds of shape"):
+        with self.assertRaisesRegex(screed.InputError, "2 seeds; allowed: one, or 3"):
             env.reset(seed=[1, 2])
         for more, text in (({"n": 10**9}, "allowed: 1 to 65536"), ({"n": 0}, "n = 0"),
                            ({"hal": "native"}, "allowed: surrogate"),
+                           ({"duration": 7200}, "65535 commands"),
+                           ({"set": {"experiment.algorithm": "strokes"}}, "allowed with commands: drive"),
                            ({"action": "fly"}, "allowed: command, duty"), ({"autoreset": "no"}, "next_step")):
             with self.assertRaisesRegex(screed.InputError, text):
                 screed.VectorEnv("level_bed", **{"n": 1, **more})

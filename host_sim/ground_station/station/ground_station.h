@@ -70,6 +70,7 @@ class PositionFixes {
 struct DriveCommand {
   double speed_m_per_s = 0.0;
   double yaw_rate_deg_per_s = 0.0;
+  bool operator==(const DriveCommand&) const = default;
 };
 
 /// What the ground station has heard.
@@ -90,8 +91,10 @@ class GroundStation {
                 const std::optional<PositionFixes>& fixes = std::nullopt)
       : arm_(arm), drive_(drive), log_(log), signer_(key), fixes_(fixes) {}
 
-  /// Commands this from now on, at once and then as often as a drive that it began with.
-  void drive(const DriveCommand& command) {
+  /// Commands this from now on: at once where it is something new, and then as often as a drive
+  /// that it began with.
+  void drive(const std::optional<DriveCommand>& command) {
+    if (command == drive_) return;
     drive_ = command;
     drive_is_new_ = true;
   }

@@ -58,7 +58,8 @@ SCREED_API screed_status screed_session_ground(const screed_session* session, in
 
 /* ---- many worlds ----------------------------------------------------------------------------- */
 
-/* Worlds of one prepared world, each with a seed, advanced by several threads. */
+/* Worlds of one prepared world, each with a seed, advanced by several threads. Where one of them
+   fails the others go on; it can be reset. */
 typedef struct screed_worlds screed_worlds;
 /* count: 1..65536; threads: 1..256. */
 SCREED_API screed_worlds* screed_worlds_create(const void* prepared, size_t size,

@@ -89,6 +89,7 @@ typedef struct screed_patch {
 SCREED_API int screed_soil_add_body(screed_soil* soil, const screed_patch* patches, size_t count,
                                     screed_error* error);
 
+/* Places are within ten beds of the middle, speeds within 1000 m/s and 10000 rad/s. */
 typedef struct screed_body_motion {
   double mass;       /* that its patches carry, kg; INFINITY: the motion is imposed */
   double inertia[9]; /* about the centre of mass, world axes, kg m^2; all zero: the soil does not
@@ -129,7 +130,7 @@ SCREED_API screed_status screed_soil_end_step(screed_soil* soil, screed_error* e
 
 /* ---- its surface ----------------------------------------------------------------------------- */
 
-/* Of the surface between nodes, m; beyond the edge as the edge says. */
+/* Of the surface between nodes, m; beyond the edge as the edge says. Not a number: failed. */
 SCREED_API double screed_soil_height(const screed_soil* soil, double x, double y);
 /* Heights of a part of the bed, nodes_y rows of nodes_x from the south, m. */
 SCREED_API screed_status screed_soil_heights(const screed_soil* soil, const screed_rectangle* part,

@@ -3,14 +3,15 @@
    senses, estimates and drives in ticks of 10 ms.
 
      screed_world* world = screed_world_create(bytes, size, 1, &error);
-     while (screed_world_ticks(world) < 60 * 100) {
-       screed_world_advance(world, 10, NULL, &error);
+     for (int second = 0; second < 60; ++second) {
+       screed_world_advance(world, 100, NULL, &error);
        screed_world_row(world, 0, SCREED_FRAMES, frame, &error);
      }
 
-   `bytes` are a world that `screed sim EXPERIMENT --hal surrogate --prepare FILE` has prepared: the
-   experiment without its files. Of a seed it gives the bits of `screed sim --seed`. Units, errors
-   and threads: base.h. */
+   `bytes` are a world that `screed prepare EXPERIMENT --out FILE` has written: the experiment
+   without its files, but with the key of its radio. Of a seed it gives the bits of `screed sim
+   EXPERIMENT --hal surrogate --seed`; a robot that leaves an open bed goes on. Units, errors and
+   threads: base.h. */
 #ifndef SCREED_WORLD_H
 #define SCREED_WORLD_H
 
@@ -33,13 +34,16 @@ SCREED_API void screed_world_destroy(screed_world* world);
 /* Robots in it; their numbers are from 0. 0 for a null pointer. */
 SCREED_API int screed_world_robots(const screed_world* world);
 /* Ticks that it has lived. */
-SCREED_API uint64_t screed_world_ticks(const screed_world* world);
+SCREED_API screed_status screed_world_ticks(const screed_world* world, uint64_t* ticks,
+                                            screed_error* error);
 
 /* What a robot is told to do in place of what its firmware would decide. */
 typedef enum screed_control {
-  SCREED_FIRMWARE = 0, /* nothing: its algorithm decides */
+  SCREED_FIRMWARE = 0, /* nothing: its algorithm decides; the ground station does as the experiment
+                          says */
   SCREED_COMMAND = 1,  /* the ground station commands a speed, m/s, and a yaw rate, rad/s, over the
-                          radio; needs the algorithm "drive" */
+                          radio; needs the algorithm "drive". A robot takes 65,535 commands: 72
+                          minutes of new ones each 100 ms */
   SCREED_DUTY = 2 /* its motors get these shares of the battery's voltage, left and right, -1..1,
                      whatever the firmware says */
 } screed_control;

@@ -13,7 +13,7 @@ GENERATIONS, SECONDS = (int(word) for word in (sys.argv[1:] + ["20", "120"][len(
 WORLDS, HIDDEN, SIGMA, RATE = 64, 8, 0.1, 0.05
 SCALE = np.array([5, 5, 1, 1, 1, 1, 1, 1, 0.1, 0.1, 0.1])
 
-env = screed.VectorEnv("level_bed", n=WORLDS, duration=SECONDS, autoreset="disabled", reward_every=SECONDS * 10)
+env = screed.VectorEnv("level_bed", n=WORLDS, duration=SECONDS)
 inputs, outputs = env.single_observation_space.shape[0], env.single_action_space.shape[0]
 sizes = [(inputs + 1) * HIDDEN, (HIDDEN + 1) * outputs]
 random = np.random.default_rng(1)
@@ -32,14 +32,11 @@ for generation in range(1, GENERATIONS + 1):
     half = random.standard_normal((WORLDS // 2, weights.size))
     changes = np.concatenate([half, -half])
     observations, _ = env.reset(seed=[generation] * WORLDS)
-    done, rewards = np.zeros(WORLDS, bool), np.zeros(WORLDS)
+    alive, rewards = np.ones(WORLDS, bool), np.zeros(WORLDS)
     for _ in range(SECONDS * 10):
-        actions = act(weights + SIGMA * changes, observations)
-        observations, reward, terminated, truncated, _ = env.step(actions)
-        rewards += reward
-        done = terminated | truncated
-        if done.any():
-            break
+        observations, reward, terminated, truncated, _ = env.step(act(weights + SIGMA * changes, observations))
+        rewards += np.where(alive, reward, 0)
+        alive &= ~(terminated | truncated)
     ranks = np.argsort(np.argsort(rewards)) / (WORLDS - 1) - 0.5
     weights += RATE / (WORLDS * SIGMA) * ranks @ changes * WORLDS / 12
     print(f"{generation}: height about level fell by {rewards.mean():.3f} mm, at best {rewards.max():.3f}", flush=True)

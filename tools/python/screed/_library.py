@@ -26,7 +26,7 @@ _EXCEPTIONS = {1: InputError, 2: BusyError, 3: MemoryError, 4: Error}
 
 
 class _Text(c.Structure):
-    _fields_ = [("text", c.c_char * 256)]
+    _fields_ = [("status", c.c_int), ("text", c.c_char * 252)]
 
 
 class Bytes(c.Structure):
@@ -70,7 +70,7 @@ _FUNCTIONS = {
     "world_reset": ("status", [_HANDLE, _U64]),
     "world_destroy": (None, [_HANDLE]),
     "world_robots": (_INT, [_HANDLE]),
-    "world_ticks": (_U64, [_HANDLE]),
+    "world_ticks": ("status", [_HANDLE, c.POINTER(_U64)]),
     "world_advance": ("status", [_HANDLE, _INT, _ARRAY]),
     "world_row": ("status", [_HANDLE, _INT, _INT, _ARRAY]),
     "world_level": ("status", [_HANDLE, _INT, _ARRAY]),
@@ -91,7 +91,7 @@ def _find() -> c.CDLL:
     chosen = os.environ.get("SCREED_LIBRARY")
     if chosen:
         return c.CDLL(chosen)
-    for folder in pathlib.Path(__file__).resolve().parents[:5]:
+    for folder in list(pathlib.Path(__file__).resolve().parents)[:5]:
         for file in (folder / "lib" / "libscreed.so.0", folder / "build" / "release" / "libscreed.so.0"):
             if file.exists():
                 return c.CDLL(str(file))
@@ -112,8 +112,7 @@ def _wrap(name: str, result, arguments):
         given = function(*values, c.byref(error))
         failed = given != 0 if result == "status" else not given if result == "handle" else given < 0
         if failed:
-            text = error.text.decode(errors="replace")
-            raise _EXCEPTIONS.get(given if result == "status" else 1, Error)(text)
+            raise _EXCEPTIONS[error.status](error.text.decode(errors="replace"))
         return given
 
     return call

@@ -16,13 +16,10 @@ from . import _library as lib
 from .worlds import Worlds, prepare
 
 try:
-    import gymnasium
     from gymnasium.spaces import Box
-    from gymnasium.vector import AutoresetMode, VectorEnv as _Base
+    from gymnasium.vector import VectorEnv as _VectorBase
     from gymnasium.vector.utils import batch_space
 except ImportError:
-    gymnasium = None
-    _Base = object
 
     class Box:
         """Numbers between bounds, as gymnasium.spaces.Box."""
@@ -50,9 +47,40 @@ except ImportError:
             return (isinstance(other, Box) and self.shape == other.shape and np.array_equal(self.low, other.low)
                     and np.array_equal(self.high, other.high))
 
+    class _VectorBase:
+        """What VectorEnv has of gymnasium.vector.VectorEnv."""
+
+        _np_random = None
+
+        @property
+        def np_random(self) -> np.random.Generator:
+            if self._np_random is None:
+                self._np_random = np.random.default_rng()
+            return self._np_random
+
+        @property
+        def unwrapped(self):
+            return self
+
     def batch_space(space: Box, n: int) -> Box:
         return Box(np.broadcast_to(space.low, (n, *space.shape)), np.broadcast_to(space.high, (n, *space.shape)),
                    (n, *space.shape), space.dtype)
+
+
+try:
+    from gymnasium.vector import AutoresetMode
+except ImportError:  # none, or before 1.1: by their names
+    AutoresetMode = None
+try:
+    from pettingzoo import ParallelEnv as _ParallelBase
+except ImportError:
+
+    class _ParallelBase:
+        """What ParallelEnv has of pettingzoo.ParallelEnv."""
+
+        num_agents = property(lambda self: len(self.agents))
+        max_num_agents = property(lambda self: len(self.possible_agents))
+        unwrapped = property(lambda self: self)
 
 
 _RAD = np.pi
@@ -89,6 +117,14 @@ class _Robots:
         told["control"] = self.control
         told["values"] = np.clip(values.reshape(-1, 2), self.action_space.low, self.action_space.high)
         return told
+
+    def keys_with(self, others: Mapping[str, Any] | None) -> dict[str, Any]:
+        """Keys of an experiment, with those that the actions need."""
+        others = dict(others or {})
+        algorithm = others.get("experiment.algorithm", "drive")
+        if "experiment.algorithm" in self.keys and algorithm != "drive":
+            raise lib.InputError(f"experiment.algorithm = {algorithm}; allowed with commands: drive")
+        return {**self.keys, **others}
 
     @staticmethod
     def observe(worlds: Worlds) -> np.ndarray:
@@ -134,7 +170,7 @@ class _Episodes:
         return rewards, terminated, truncated
 
 
-class VectorEnv(_Base):
+class VectorEnv(_VectorBase):
     """`n` worlds of an experiment with one robot each, in the stand-in, with the firmware in the loop.
 
     Actions, one each `ticks` of 10 ms: "command", speed (m/s) and yaw rate (rad/s), which the unchanged firmware
@@ -156,6 +192,7 @@ class VectorEnv(_Base):
                  duration: float = 600.0, reward_every: int = 10,
                  reward: Callable[[Worlds], Sequence[float]] | None = None, autoreset: str = "next_step",
                  threads: int | None = None, copy: bool = True):
+        self.closed = True  # until it is whole
         if hal != "surrogate":
             raise lib.InputError(f"hal = {hal!r}; allowed: surrogate")
         if autoreset not in ("next_step", "same_step", "disabled"):
@@ -163,15 +200,18 @@ class VectorEnv(_Base):
         self._robots = _Robots(action)
         if not 1 <= n <= 65536:
             raise lib.InputError(f"n = {n}; allowed: 1 to 65536")
-        keys = {"robots.count": 1, **self._robots.keys, **(set or {})}
+        keys = {"robots.count": 1, **self._robots.keys_with(set)}
+        steps = round(duration * 100 / ticks)
+        if action == "command" and steps * 1.3 > 65535:
+            raise lib.InputError(f"{steps} actions in an episode; allowed: 50000, as a robot takes 65535 commands")
         self._seeds = np.arange(1, n + 1, dtype=np.uint64)
         self._worlds = Worlds(prepare(experiment, keys), self._seeds, threads=threads)
         if self._worlds.robots != 1:
             raise lib.InputError("robots.count: allowed: 1; ParallelEnv has several")
         self.ticks, self.autoreset, self.copy = ticks, autoreset, copy
-        self._episodes = _Episodes(self._worlds, round(duration * 100 / ticks), reward_every, reward)
+        self._episodes = _Episodes(self._worlds, steps, reward_every, reward)
         self.num_envs = n
-        mode = autoreset if gymnasium is None else AutoresetMode[autoreset.upper()]
+        mode = autoreset if AutoresetMode is None else AutoresetMode[autoreset.upper()]
         self.metadata = {"autoreset_mode": mode, "render_modes": []}
         self.render_mode = None
         self.single_action_space = self._robots.action_space
@@ -180,17 +220,9 @@ class VectorEnv(_Base):
         self.observation_space = batch_space(self.single_observation_space, n)
         self._done = np.zeros(n, bool)
         self._fresh = True
-        self._np_random = None
         self.closed = False
 
     _STANDING = 600  # ticks until every robot is armed and runs
-
-    @property
-    def np_random(self) -> np.random.Generator:
-        """Draws the seeds of worlds that are reset by themselves."""
-        if self._np_random is None:
-            self._np_random = np.random.default_rng()
-        return self._np_random
 
     def _restart(self, which: np.ndarray, seeds: np.ndarray | None = None) -> None:
         if seeds is None:
@@ -215,18 +247,25 @@ class VectorEnv(_Base):
             which = np.asarray(options["reset_mask"], bool)
             if which.shape != (self.num_envs,):
                 raise lib.InputError(f"reset_mask of shape {which.shape}; allowed: {(self.num_envs,)}")
-        seeds = None
-        if seed is not None:
-            seeds = np.asarray(seed)
-            if seeds.shape == ():
-                self._np_random = np.random.default_rng(int(seeds))
-                seeds = int(seeds) + np.arange(self.num_envs)
-            if seeds.shape != (self.num_envs,):
-                raise lib.InputError(f"seeds of shape {seeds.shape}; allowed: {(self.num_envs,)}")
-            seeds = seeds.astype(np.uint64)
-        self._restart(which, seeds)
+            if self._fresh and not which.all():
+                raise lib.InputError("reset_mask of some before all were reset")
+        self._restart(which, self._seeds_of(seed))
         self._fresh = False
         return self._observation(), self._infos()
+
+    def _seeds_of(self, seed) -> np.ndarray | None:
+        """One for each world; draws those that are not given. The generator begins anew with a seed."""
+        if seed is None:
+            return None
+        if isinstance(seed, (int, np.integer)):
+            seed = [int(seed) + i for i in range(self.num_envs)]
+        if len(seed) != self.num_envs:
+            raise lib.InputError(f"{len(seed)} seeds; allowed: one, or {self.num_envs}")
+        given = [int(its) for its in seed if its is not None]
+        if given:
+            self._np_random, self._np_random_seed = np.random.default_rng(given), given[0]
+        drawn = self.np_random.integers(0, 2**32, self.num_envs, dtype=np.uint64)
+        return np.array([drawn[i] if its is None else its for i, its in enumerate(seed)], np.uint64)
 
     def step(self, actions):
         self._require_open()
@@ -248,7 +287,7 @@ class VectorEnv(_Base):
         observation, infos = self._observation(), self._infos()
         if self.autoreset == "same_step" and self._done.any():
             ended = self._done.copy()
-            final, final_infos = observation, infos
+            final, final_infos = observation, {**infos, "truth": infos["truth"].copy()}
             self._restart(ended)
             observation, infos = self._observation(), self._infos()
             infos |= {"final_obs": final, "_final_obs": ended, "final_info": final_infos, "_final_info": ended}
@@ -268,7 +307,7 @@ class VectorEnv(_Base):
             self.close()
 
 
-class ParallelEnv:
+class ParallelEnv(_ParallelBase):
     """One world with several robots, "robot_0" and so on, as a parallel environment of PettingZoo.
 
     Actions, observations, rewards and ends as those of VectorEnv, the reward the same for all: they level one bed. A
@@ -282,7 +321,7 @@ class ParallelEnv:
                  set: Mapping[str, Any] | None = None, action: str = "command", ticks: int = 10,
                  duration: float = 600.0, reward_every: int = 10):
         self._robots = _Robots(action)
-        keys = {**self._robots.keys, **(set or {}), "robots.count": robots}
+        keys = {**self._robots.keys_with(set), "robots.count": robots}
         self._worlds = Worlds(prepare(experiment, keys), [1], threads=1)
         self._episodes = _Episodes(self._worlds, round(duration * 100 / ticks), reward_every, None)
         self._ticks = ticks
@@ -358,8 +397,9 @@ def vec_env(env: VectorEnv):
         def __init__(self):
             self.num_envs = env.num_envs
             self.observation_space, self.action_space = env.single_observation_space, env.single_action_space
-            self.render_mode = None
             self.reset_infos = [{} for _ in range(self.num_envs)]
+            if base is not object:
+                super().__init__(self.num_envs, self.observation_space, self.action_space)
             self._seed, self._actions = None, None
 
         def seed(self, seed=None):

@@ -63,7 +63,9 @@ class World:
     @property
     def time(self) -> float:
         """That it has lived, s."""
-        return lib.library.world_ticks(self._handle) / 100
+        ticks = c.c_uint64()
+        lib.library.world_ticks(self._handle, c.byref(ticks))
+        return ticks.value / 100
 
     def advance(self, ticks: int, *, command=None, duty=None) -> None:
         """Goes on by so many ticks of 10 ms.
@@ -120,7 +122,7 @@ class Worlds:
         if its.ndim != 1:
             raise lib.InputError(f"seeds of shape {its.shape}; allowed: one for each world")
         self._handle = lib.library.worlds_create(prepared, len(prepared), lib.address(its), len(its),
-                                                 threads or len(os.sched_getaffinity(0)))
+                                                 threads or min(256, len(os.sched_getaffinity(0))))
         self.count = len(its)
         self.robots: int = lib.library.worlds_robots(self._handle)
         self._rows = {}
@@ -146,6 +148,7 @@ class Worlds:
         """All by so many ticks; `told`: of actions(), for each robot of each world."""
         if told is not None and (told.dtype != lib.ACTION or told.shape != (self.count * self.robots,)):
             raise lib.InputError(f"actions of shape {told.shape}; allowed: {(self.count * self.robots,)}")
+        told = None if told is None else np.ascontiguousarray(told)
         lib.library.worlds_advance(self._handle, ticks, lib.address(told))
 
     def rows(self, table: int) -> np.ndarray:

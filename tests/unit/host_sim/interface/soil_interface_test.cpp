@@ -131,7 +131,7 @@ std::vector<char> state_of(const screed_soil* soil) {
 /// The text with which a call fails.
 template <typename Call>
 std::string refusal(const Call& call) {
-  screed_error error = {"not called"};
+  screed_error error = {SCREED_OK, "not called"};
   call(&error);
   return error.text;
 }
@@ -383,7 +383,7 @@ TEST(SoilInterface, AMotionThatIsNotAllowedIsRefusedAndChangesNothing) {
   EXPECT_EQ(press(0, good, good_patches, 0.1), "dt = 0.1; allowed: 0.00001 to 0.02 s");
   screed_body_motion wrong = good;
   wrong.velocity[1] = std::nan("");
-  EXPECT_EQ(press(0, wrong, good_patches, kStep_s), "velocity = nan; allowed: finite numbers");
+  EXPECT_EQ(press(0, wrong, good_patches, kStep_s), "velocity = nan; allowed: -1000 to 1000 m/s");
   wrong = good;
   wrong.inertia[1] = 5.0;
   EXPECT_EQ(press(0, wrong, good_patches, kStep_s),
@@ -395,8 +395,11 @@ TEST(SoilInterface, AMotionThatIsNotAllowedIsRefusedAndChangesNothing) {
   patches[2].axes[0] = 2.0;
   EXPECT_NE(press(0, good, patches, kStep_s).find("error of the rotation"), std::string::npos);
   patches = good_patches;
+  patches[2].surface_speed = 1e17;
+  EXPECT_EQ(press(0, good, patches, kStep_s), "surface_speed = 1e+17; allowed: -1000 to 1000 m/s");
+  patches = good_patches;
   patches[2].position[2] = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(press(0, good, patches, kStep_s), "position = inf; allowed: finite numbers");
+  EXPECT_EQ(press(0, good, patches, kStep_s), "position = inf; allowed: within ten beds, m");
   EXPECT_EQ(state_of(soil.get()), before);
 }
 

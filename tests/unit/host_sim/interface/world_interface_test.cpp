@@ -49,6 +49,12 @@ const std::string& prepared() {
   return bytes;
 }
 
+uint64_t ticks_of(const Handle& world) {
+  uint64_t ticks = 0;
+  EXPECT_EQ(screed_world_ticks(world.get(), &ticks, nullptr), SCREED_OK);
+  return ticks;
+}
+
 void advance(const Handle& world, int ticks, const std::vector<screed_action>& actions = {}) {
   screed_error error;
   EXPECT_EQ(
@@ -83,7 +89,7 @@ std::vector<double> heights_of(const Handle& world) {
 
 template <typename Call>
 std::string refusal(const Call& call) {
-  screed_error error = {"not called"};
+  screed_error error = {SCREED_OK, "not called"};
   EXPECT_NE(call(&error), SCREED_OK);
   return error.text;
 }
@@ -112,7 +118,7 @@ void expect_the_same(const Experiment& experiment, const Handle& world) {
   const std::vector<double> heights = heights_of(world);
   for (size_t i = 0; i < heights.size(); ++i)
     ASSERT_EQ(heights[i], its->terrain().node(i) * kHeightUnit_m);
-  EXPECT_EQ(screed_world_ticks(world.get()), 2000U);
+  EXPECT_EQ(ticks_of(world), 2000U);
 }
 
 TEST(WorldInterface, HasTheBitsOfTheProgram) {
@@ -125,7 +131,7 @@ TEST(WorldInterface, HasThemOfAnySeed) {
   const Handle world = make(prepared());
   advance(world, 100);
   ASSERT_EQ(screed_world_reset(world.get(), 7, nullptr), SCREED_OK);
-  EXPECT_EQ(screed_world_ticks(world.get()), 0U);
+  EXPECT_EQ(ticks_of(world), 0U);
   expect_the_same(level_bed({"experiment.seed=7"}), world);
 }
 
@@ -156,6 +162,18 @@ TEST(WorldInterface, ACommandGoesOverTheRadioToTheFirmware) {
   EXPECT_NEAR(frame_of(world).linear, 0.0, 1e-9);
   advance(world, 10, {{SCREED_COMMAND, {0.1, 0.0}}});
   EXPECT_NEAR(frame_of(world).linear, 0.1, 1e-9);
+  // Told nothing any more, it does what the experiment says.
+  advance(world, 10, {{SCREED_FIRMWARE, {0.0, 0.0}}});
+  EXPECT_NEAR(frame_of(world).linear, level_bed().drive.speed_m_per_s, 1e-9);
+}
+
+TEST(WorldInterface, ACommandNeedsAFirmwareThatExecutesIt) {
+  const Handle world = make(prepared());
+  const std::vector<screed_action> told(2, {SCREED_COMMAND, {0.1, 0.0}});
+  EXPECT_EQ(refusal([&](screed_error* error) {
+              return screed_world_advance(world.get(), 1, told.data(), error);
+            }),
+            "control = 1, a command: needs [experiment] algorithm = drive");
 }
 
 TEST(WorldInterface, ColumnsDescribeARow) {
@@ -216,7 +234,7 @@ TEST(WorldInterface, WhatIsNotAllowedIsRefused) {
   EXPECT_EQ(advance_by(1, {none, {SCREED_COMMAND, {9.0, 0.0}}}), "speed = 9; allowed: -1 to 1 m/s");
   EXPECT_EQ(advance_by(1, {{7, {0.0, 0.0}}, none}),
             "control = 7; allowed: 0 to 2 (screed_control)");
-  EXPECT_EQ(screed_world_ticks(world.get()), 0U);
+  EXPECT_EQ(ticks_of(world), 0U);
   std::vector<uint8_t> row(kFrameBytes);
   const auto read = [&](int robot, int table) {
     return refusal([&](screed_error* error) {
