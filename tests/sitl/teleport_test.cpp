@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host_sim/physics/soil/soil_parameters.h"
-#include "host_sim/run/simulation/recorders.h"
+#include "host_sim/run/world/frame_recorder.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {

@@ -8,6 +8,7 @@
 
 // ODE and the reader of URDF call these: defined in the program, they come before the C library's,
 // whose bits depend on the processor.
+#pragma GCC visibility push(default)
 extern "C" {
 double sin(double x) noexcept {
   return screed::portable::sin(x);
@@ -30,6 +31,7 @@ double atan2(double y, double x) noexcept {
   return screed::portable::atan2(y, x);
 }
 }
+#pragma GCC visibility pop
 
 namespace screed {
 namespace {

@@ -12,7 +12,7 @@
 
 /// fontconfig keeps what it knows about the system's fonts until the process ends (the same few
 /// hundred bytes for one canvas or fifty). The leak checker of -fsanitize=address asks here.
-extern "C" const char* __lsan_default_suppressions() {
+extern "C" __attribute__((visibility("default"))) const char* __lsan_default_suppressions() {
   return "leak:libfontconfig";
 }
 

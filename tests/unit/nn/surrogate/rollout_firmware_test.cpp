@@ -12,6 +12,7 @@
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/session/export.h"
 #include "host_sim/run/simulation/recorders.h"
+#include "host_sim/run/world/frame_recorder.h"
 #include "host_sim/run/world/world_setup.h"
 #include "nn/surrogate/rollout.h"
 #include "nn/surrogate/surrogate_plant.h"

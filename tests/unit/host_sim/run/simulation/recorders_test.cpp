@@ -7,6 +7,7 @@
 #include "host_sim/run/session/session_reader.h"
 #include "host_sim/run/simulation/recorders.h"
 #include "host_sim/run/simulation/run_files.h"
+#include "host_sim/run/world/frame_recorder.h"
 #include "tests/temp_folder.h"
 #include "tests/unit/test_robot.h"
 
