@@ -64,12 +64,6 @@ ToldWorld::ToldWorld(std::shared_ptr<const PreparedWorld> prepared, uint64_t see
   reset(seed);
 }
 
-void ToldWorld::check_seed(uint64_t seed) const {
-  if (prepared_->one_seed.empty()) return;
-  PreparedWorld its = *prepared_;
-  set_seed(seed, its);
-}
-
 void ToldWorld::check_actions(std::span<const screed_action> actions) const {
   for (size_t i = 0; i < actions.size(); ++i) {
     check_action(actions[i]);
@@ -81,8 +75,9 @@ void ToldWorld::check_actions(std::span<const screed_action> actions) const {
 }
 
 void ToldWorld::reset(uint64_t seed) {
+  check_seed(seed, *prepared_);
   PreparedWorld its = *prepared_;
-  set_seed(seed, its);
+  its.options.seed = seed;
   world_ = make_standin_world(its);
   actions_.assign(world_->robots(), {});
   recorders_.assign(world_->robots(), {});

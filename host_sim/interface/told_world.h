@@ -20,14 +20,12 @@ namespace screed::interface {
 
 class ToldWorld final : private RobotWatch {
  public:
-  /// Throws InputError as set_seed() and make_standin_world() do.
+  /// Throws InputError as check_seed() and make_standin_world() do.
   ToldWorld(std::shared_ptr<const PreparedWorld> prepared, uint64_t seed);
   ToldWorld(const ToldWorld&) = delete;
   ToldWorld& operator=(const ToldWorld&) = delete;
 
-  /// Throws InputError for a seed that it cannot have.
-  void check_seed(uint64_t seed) const;
-  /// As it was made, of another seed.
+  /// As it was made, of another seed. Throws InputError as the constructor does.
   void reset(uint64_t seed);
   /// One action a robot, or none for nothing new. Throws InputError where one is not allowed.
   void check_actions(std::span<const screed_action> actions) const;
@@ -39,6 +37,7 @@ class ToldWorld final : private RobotWatch {
   screed_level level(bool with_transport) const;
 
   const World& world() const { return *world_; }
+  const PreparedWorld& prepared() const { return *prepared_; }
 
  private:
   void on_output(size_t robot, RobotOutput& output) override;

@@ -149,7 +149,7 @@ screed_status screed_worlds_reset(screed_worlds* worlds, const uint8_t* which,
     require_pointer(seeds, "seeds");
     if (ticks != 0) check_ticks(ticks);
     for (size_t i = 0; i < worlds->worlds.size(); ++i)
-      if (which[i] != 0) worlds->worlds[i]->check_seed(seeds[i]);
+      if (which[i] != 0) check_seed(seeds[i], worlds->worlds[i]->prepared());
     worlds->crew.run(worlds->worlds.size(), [&](size_t i) {
       if (which[i] == 0) return;
       worlds->worlds[i]->reset(seeds[i]);

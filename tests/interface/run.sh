@@ -4,18 +4,7 @@
 set -uo pipefail
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
-passed=0
-failed=0
-check() {  # NAME COMMAND...
-  local name=$1
-  shift
-  if said=$("$@" 2>&1); then
-    passed=$((passed + 1))
-  else
-    failed=$((failed + 1))
-    printf '%s: %s\n%s\n' failed "$name" "$said"
-  fi
-}
+. tests/check.sh
 
 make --no-print-directory INSTALLED=yes install-libraries PREFIX="$tree/first" > "$tree/log" 2>&1 ||
   { cat "$tree/log"; exit 1; }

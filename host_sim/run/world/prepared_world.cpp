@@ -171,12 +171,11 @@ HeightField PreparedWorld::dressed(HeightField field) const {
   return field;
 }
 
-void set_seed(uint64_t seed, PreparedWorld& world) {
+void check_seed(uint64_t seed, const PreparedWorld& world) {
   if (seed != world.options.seed && !world.one_seed.empty()) {
     throw InputError("seed = " + std::to_string(seed) + "; allowed: " +
                      std::to_string(world.options.seed) + " alone, since " + world.one_seed);
   }
-  world.options.seed = seed;
 }
 
 std::unique_ptr<World> make_standin_world(const PreparedWorld& prepared) {

@@ -36,8 +36,8 @@ struct PreparedWorld {
   HeightField dressed(HeightField field) const;
 };
 
-/// The same with another seed. Throws InputError where it has one alone.
-void set_seed(uint64_t seed, PreparedWorld& world);
+/// Throws InputError for another seed than that of a world that has one alone.
+void check_seed(uint64_t seed, const PreparedWorld& world);
 
 /// Of the stand-in. Throws InputError as StandInPlant and World do.
 std::unique_ptr<World> make_standin_world(const PreparedWorld& prepared);

@@ -130,6 +130,28 @@ for _name, (_result, _arguments) in _FUNCTIONS.items():
 library = _Calls()
 
 
+class Handle:
+    """Owns what the library made and `_free` gives back; also as a context."""
+
+    _handle = None
+    _free: str
+
+    def close(self) -> None:
+        """What was read stays; nothing can be asked any more."""
+        handle, self._handle = self._handle, None
+        getattr(library, self._free)(handle)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def __del__(self):
+        if self._handle is not None:
+            self.close()
+
+
 def address(array: np.ndarray | None):
     """Of an array's first element; it must live as long as the call."""
     return None if array is None else array.ctypes.data

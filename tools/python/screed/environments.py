@@ -83,13 +83,12 @@ except ImportError:
         unwrapped = property(lambda self: self)
 
 
-_RAD = np.pi
 #: What a robot knows of itself: name, column of its frame or sample, element, factor to SI units.
 _SENSED = (
     ("pitch", lib.FRAMES, "est_pitch", None, 1.0), ("roll", lib.FRAMES, "est_roll", None, 1.0),
     ("heading", lib.FRAMES, "est_heading", None, 1.0), ("x", lib.FRAMES, "odometry_x", None, 1.0),
     ("y", lib.FRAMES, "odometry_y", None, 1.0),
-    *((f"rate_{axis}", lib.SAMPLES, "gyro", i, 0.07 * _RAD / 180) for i, axis in enumerate("xyz")),
+    *((f"rate_{axis}", lib.SAMPLES, "gyro", i, 0.07 * np.pi / 180) for i, axis in enumerate("xyz")),
     *((f"force_{axis}", lib.SAMPLES, "accel", i, 0.244e-3 * 9.80665) for i, axis in enumerate("xyz")),
 )
 
@@ -176,7 +175,7 @@ class VectorEnv(_VectorBase):
     Actions, one each `ticks` of 10 ms: "command", speed (m/s) and yaw rate (rad/s), which the unchanged firmware
     executes (the experiment's algorithm becomes "drive"); "duty", shares of both motors' voltage.
     Observations: what the robot knows of itself (`sensed` has their names), in SI units; the truth is
-    `infos["truth"]`, rows as of Session.frames, replaced by the next step.
+    `infos["truth"]`, rows as of Session.frames; without `copy` the next step replaces them.
     Rewards: by how many mm the height of the ground about level has fallen, given every `reward_every` steps; or what
     reward(worlds) returns.
     An episode is truncated after `duration` seconds and terminated by a fault. `autoreset`: "next_step" (an action

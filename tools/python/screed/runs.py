@@ -26,31 +26,18 @@ def settings(seed: int | None, values: Mapping[str, Any] | None) -> list[str]:
     return words
 
 
-class Session:
+class Session(lib.Handle):
     """A recorded run: `Session("out/first_drive-0001")`; of several robots one, by its number.
 
     Tables are structured arrays, a row a tick: `frames["x"]`; `frames.dtype.metadata["x"]` has unit and meaning.
     They are read when they are first asked for.
     """
 
+    _free = "session_close"
+
     def __init__(self, run: str | os.PathLike, robot: int = 0):
         self._handle = lib.library.session_open(os.fspath(run).encode(), robot)
         self.run = pathlib.Path(run)
-
-    def close(self) -> None:
-        """What was read stays; nothing can be read any more."""
-        handle, self._handle = self._handle, None
-        lib.library.session_close(handle)
-
-    def __enter__(self) -> Session:
-        return self
-
-    def __exit__(self, *_) -> None:
-        self.close()
-
-    def __del__(self):
-        if getattr(self, "_handle", None) is not None:
-            self.close()
 
     def _table(self, table: int) -> np.ndarray:
         rows = np.empty(lib.library.session_rows(self._handle, table), lib.dtype_of(table))

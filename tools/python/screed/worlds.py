@@ -30,31 +30,18 @@ def actions(control: int, values, count: int) -> np.ndarray:
     return array
 
 
-class World:
+class World(lib.Handle):
     """A world: `World("level_bed", seed=3)`; `prepare()`'s bytes do as well."""
 
+    _free = "world_destroy"
+
     def __init__(self, experiment: str | os.PathLike | bytes, *, seed: int = 1, set: Mapping[str, Any] | None = None):
-        self._handle = None
         prepared = experiment if isinstance(experiment, bytes) else prepare(experiment, set)
         self._handle = lib.library.world_create(prepared, len(prepared), seed)
         self.robots: int = lib.library.world_robots(self._handle)
         self._bed, spacing = lib.Rectangle(), c.c_double()
         lib.library.world_bed(self._handle, c.byref(self._bed), c.byref(spacing))
         self.spacing = spacing.value
-
-    def close(self) -> None:
-        handle, self._handle = self._handle, None
-        lib.library.world_destroy(handle)
-
-    def __enter__(self) -> World:
-        return self
-
-    def __exit__(self, *_) -> None:
-        self.close()
-
-    def __del__(self):
-        if getattr(self, "_handle", None) is not None:
-            self.close()
 
     def reset(self, seed: int) -> None:
         """As it was made, of another seed."""
@@ -111,12 +98,13 @@ class World:
         return heights
 
 
-class Worlds:
+class Worlds(lib.Handle):
     """Many worlds of one experiment, each with a seed, advanced by several threads."""
+
+    _free = "worlds_destroy"
 
     def __init__(self, experiment: str | os.PathLike | bytes, seeds: Sequence[int], *,
                  set: Mapping[str, Any] | None = None, threads: int | None = None):
-        self._handle = None
         prepared = experiment if isinstance(experiment, bytes) else prepare(experiment, set)
         its = np.ascontiguousarray(seeds, np.uint64)
         if its.ndim != 1:
@@ -126,14 +114,6 @@ class Worlds:
         self.count = len(its)
         self.robots: int = lib.library.worlds_robots(self._handle)
         self._rows = {}
-
-    def close(self) -> None:
-        handle, self._handle = self._handle, None
-        lib.library.worlds_destroy(handle)
-
-    def __del__(self):
-        if getattr(self, "_handle", None) is not None:
-            self.close()
 
     def reset(self, which, seeds, ticks: int = 0) -> None:
         """Those where `which` is true, with their seeds of `seeds`; then they live so many ticks alone."""
