@@ -58,6 +58,8 @@ test-long: $(SCREED) $(LONG_TESTS) $$(TEST_IMAGES)
 # The tests of single sources: quick to build, for whoever works on them. Which ones, no date of a file says: linked
 # each time.
 .PHONY: test-file test-tutorial
+# The tutorial comes last: it changes the tree.
+TUTORIALS := soil-library world-library python looking-at-runs tutorial
 test-file:  ## build and run single tests (TEST='tests/unit/firmware/leveling/*_test.cpp')
 test-file: $(SCREED) $(B)/tests/test_file
 	@SCREED_PROGRAM=$(abspath $(SCREED)) $(B)/tests/test_file $(ARGS)
@@ -65,8 +67,8 @@ $(B)/tests/test_file: $(call objects,$(wildcard $(TEST)) $(filter-out %_test.cpp
   $(B)/link.flags FORCE
 	$(if $(wildcard $(TEST)),,$(error TEST='FILE...' names sources of tests; there is none of the name '$(TEST)'))
 	$(call link_tests)
-test-tutorial: $(SCREED)  ## the commands of the tutorial and of three other pages, in a copy of the tree
-	@for page in tutorial soil-library world-library python ; do tests/docs/tutorial.sh docs/$$page.md ; done
+test-tutorial: $(SCREED)  ## the commands of the tutorial and of four other pages, in a copy of the tree
+	@tests/docs/tutorial.sh $(TUTORIALS:%=docs/%.md)
 
 .PHONY: test-install
 test-install: $(SCREED) $(REPORT_PAGE) $(INTERFACE_LIBRARIES)  ## install, move the tree, run it from elsewhere

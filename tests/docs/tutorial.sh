@@ -1,11 +1,10 @@
 #!/bin/bash
-# tutorial.sh PAGE: runs the blocks ```sh of a Markdown page, from top to bottom, in one shell and in a copy of the
-# tree, as a reader would.
-# What is built already is copied along, so only what the page changes is compiled. Ends with 1 at the first command
+# tutorial.sh PAGE...: runs the blocks ```sh of Markdown pages, from top to bottom, each page in a shell of its own and
+# all in one copy of the tree, as a reader would.
+# What is built already is copied along, so only what a page changes is compiled. Ends with 1 at the first command
 # that fails, with its line in the page.
 set -euo pipefail
-page=$1
-# The page's make commands are a user's: they stand in no other make.
+# A page's make commands are a user's: they stand in no other make.
 unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES INSTALLED
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -21,23 +20,28 @@ for built in build/generated build/schema build/report build/firmware build/rele
   fi
 done
 
-# Each line of the page becomes a line of the script, so that line numbers are the same.
-awk '/^```/ { in_block = !in_block && $0 == "```sh"; print ""; next } { print in_block ? $0 : "" }' "$page" \
-  > "$folder/commands.sh"
-grep -q . "$folder/commands.sh" || { echo "$page has no commands" >&2; exit 1; }
-cat > "$folder/main.sh" <<'END'
+cd "$folder/screed"
+# Debian's programs come first, as on a reader's machine.
+export PATH="/usr/bin:$PATH"
+for page in "$@"; do
+  # Results of the page before are not there.
+  rm -rf out
+  # Each line of the page becomes a line of the script, so that line numbers are the same.
+  awk '/^```/ { in_block = !in_block && $0 == "```sh"; print ""; next } { print in_block ? $0 : "" }' "$page" \
+    > "$folder/commands.sh"
+  grep -q . "$folder/commands.sh" || { echo "$page has no commands" >&2; exit 1; }
+  cat > "$folder/main.sh" <<'END'
 set -eE
 trap 'status=$?; echo "PAGE:$LINENO: ended with status $status: $BASH_COMMAND" >&2' ERR
 END
-sed -i "s|PAGE|$page|" "$folder/main.sh"
-cd "$folder/screed"
-# Sourced, so that LINENO counts the page's lines. No display: windows have no place in it.
-# Debian's programs come first, as on a reader's machine.
-export PATH="/usr/bin:$PATH"
-if env -u DISPLAY -u WAYLAND_DISPLAY DEPS=no bash -c 'set -m; . "$0"; . "$1"' "$folder/main.sh" "$folder/commands.sh" \
-  > "$folder/log" 2>&1 < /dev/null; then
-  echo "$page: $(grep -c . "$folder/commands.sh") lines of commands ran"
-else
-  tail -60 "$folder/log"
-  exit 1
-fi
+  sed -i "s|PAGE|$page|" "$folder/main.sh"
+  # Sourced, so that LINENO counts the page's lines. No display: windows have no place in it.
+  begin=$SECONDS
+  if env -u DISPLAY -u WAYLAND_DISPLAY DEPS=no bash -c 'set -m; . "$0"; . "$1"' "$folder/main.sh" \
+    "$folder/commands.sh" > "$folder/log" 2>&1 < /dev/null; then
+    echo "$page: $(grep -c . "$folder/commands.sh") lines of commands ran in $((SECONDS - begin)) s"
+  else
+    tail -60 "$folder/log"
+    exit 1
+  fi
+done

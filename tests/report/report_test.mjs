@@ -8,6 +8,7 @@ import { cpSync, existsSync, readdirSync, readFileSync, statSync, writeFileSync 
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { openReport, startBrowser, waitFor } from './browser.mjs';
+import { mcapTests } from './mcap_tests.mjs';
 
 const [program, folder] = process.argv.slice(2);
 const key = '00112233445566778899aabbccddeeff';
@@ -348,7 +349,7 @@ parameters.walk_speed_max = 100..200
 `, '--metric', 'distance_m');
 const browser = await startBrowser();
 let failed = 0;
-for (const [name, test] of Object.entries(tests)) {
+for (const [name, test] of Object.entries({ ...tests, ...mcapTests(screed, folder) })) {
   try {
     await test(browser);
   } catch (error) {

@@ -4,11 +4,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <sstream>
+#include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/record.h"
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/session_reader.h"
 #include "paths.h"
@@ -71,6 +76,31 @@ TEST_F(Simulation, LeavesARunFolderThatReplays) {
   const ReplayResult replay = replay_session(root_ / "run" / "session.h5");
   EXPECT_EQ(replay.ticks, 800u);
   EXPECT_FALSE(replay.first_difference_tick.has_value()) << replay.first_difference;
+}
+
+TEST_F(Simulation, WhatIfPartsFromTheRecordingWhereTheWholeRunDoes) {
+  run("recorded");
+  experiment_.parameters.walk_speed_max() = 100;
+  run("other");
+  const SessionReader recorded(root_ / "recorded" / "session.h5");
+  const SessionReader other(root_ / "other" / "session.h5");
+  std::vector<RobotOutput> a(recorded.frames());
+  std::vector<RobotOutput> b(other.frames());
+  recorded.read(0, std::span(a));
+  other.read(0, std::span(b));
+  const auto parted =
+      std::mismatch(a.begin(), a.end(), b.begin(), [](const auto& x, const auto& y) {
+        std::array<std::uint8_t, kOutputBytes> row_x{};
+        std::array<std::uint8_t, kOutputBytes> row_y{};
+        pack(x, OutputRow(row_x));
+        pack(y, OutputRow(row_y));
+        return row_x == row_y;
+      });
+  ASSERT_NE(parted.first, a.end());
+  ReplayOptions what_if;
+  what_if.parameters = experiment_.parameters;
+  const ReplayResult replay = replay_session(root_ / "recorded" / "session.h5", what_if);
+  EXPECT_EQ(replay.first_difference_tick, static_cast<std::uint64_t>(parted.first - a.begin()));
 }
 
 TEST_F(Simulation, TheRecordedExperimentGivesTheSameRunAgain) {

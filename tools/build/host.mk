@@ -54,7 +54,7 @@ PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng libtiff-4 stb cairo in
 TEST_PACKAGES := gtest_main mpfr
 BENCH_PACKAGES := benchmark
 # Headers of these are known to single files.
-LINK_PACKAGES := zlib librsvg-2.0 sdl2
+LINK_PACKAGES := zlib libzstd librsvg-2.0 sdl2
 
 # Foreign headers are system headers (no warnings); behind the compiler's own, since a package may name /usr/include.
 # Threads are for who links them: a compiler refuses headers that were compiled without (tools/build/headers).

@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/base64.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/memory_room.h"
@@ -261,6 +262,19 @@ void write_svg_as_png(const std::filesystem::path& path, const std::string& svg,
       reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(surface.get())),
       static_cast<std::size_t>(all.width) * static_cast<std::size_t>(all.height));
   write_rgb_png(path, static_cast<int>(all.width), static_cast<int>(all.height), rgb_bytes(pixels));
+}
+
+void check_picture_name(const std::string& option, const std::filesystem::path& path) {
+  if (path.extension() == ".svg" || path.extension() == ".png") return;
+  throw InputError(option + " " + path.string() + ": the name ends in .svg or .png");
+}
+
+void write_picture(const std::filesystem::path& path, const std::string& svg) {
+  if (path.extension() == ".png") {
+    write_svg_as_png(path, svg);
+  } else {
+    write_file(path, svg);
+  }
 }
 
 }  // namespace screed

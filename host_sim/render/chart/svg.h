@@ -73,4 +73,9 @@ class Svg {
 void write_svg_as_png(const std::filesystem::path& path, const std::string& svg,
                       double scale = 2.0);
 
+/// Throws InputError that begins with `option`, unless the name ends in .svg or .png.
+void check_picture_name(const std::string& option, const std::filesystem::path& path);
+/// Writes an SVG as its name says, as it is or as a PNG. Throws RunError.
+void write_picture(const std::filesystem::path& path, const std::string& svg);
+
 }  // namespace screed

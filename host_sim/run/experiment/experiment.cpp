@@ -272,6 +272,10 @@ Experiment read_experiment_row(const std::filesystem::path& name, const Experime
   return make_experiment(file, entries, row.where.empty() ? file.path.string() : row.where);
 }
 
+void apply_override(Experiment& experiment, const std::string& override) {
+  apply(experiment, parse_override(override), "--set");
+}
+
 ExperimentFile read_experiment_file(const std::filesystem::path& name) {
   const std::filesystem::path path = find_experiment(name);
   return {path, read_ini_file(path)};

@@ -81,6 +81,10 @@ std::filesystem::path find_experiment(const std::filesystem::path& name);
 Experiment read_experiment(const std::filesystem::path& path,
                            const std::vector<std::string>& overrides = {});
 
+/// Puts one override on top of an experiment. What no single key can tell is not checked. Throws
+/// InputError.
+void apply_override(Experiment& experiment, const std::string& override);
+
 /// The entries of an experiment file, for experiments that have it in common.
 struct ExperimentFile {
   std::filesystem::path path;  ///< as messages call it; data files are looked for beside it first

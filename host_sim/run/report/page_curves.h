@@ -81,7 +81,14 @@ class PageTrack {
 /// States over time and changes of them.
 class PageEvents {
  public:
+  struct Event {
+    double time_s;
+    std::string text;
+  };
+
   void add(const SimFrame& frame);
+  /// So far.
+  const std::vector<Event>& events() const { return events_; }
   /// Sets "leveling" and "supervisor" (lists of [begin s, end s, state]), "supervisor_states"
   /// (names by number) and "events" (time and text) of the object.
   void finish(Json& json) const;
@@ -91,10 +98,6 @@ class PageEvents {
     double begin_s;
     double end_s;
     std::int32_t state;
-  };
-  struct Event {
-    double time_s;
-    std::string text;
   };
   static void extend(std::vector<Band>& bands, double time_s, std::int32_t state);
 

@@ -63,14 +63,14 @@ std::vector<double> places(double origin_m, double spacing_m, int nodes, int mer
   return result;
 }
 
-int merged_nodes(const HeightMapGeometry& g) {
-  return (static_cast<int>(std::max(g.nx, g.ny)) + CoarseGrid::kMaxSide - 1) / CoarseGrid::kMaxSide;
+int merged_nodes(const HeightMapGeometry& g, int max_side) {
+  return (static_cast<int>(std::max(g.nx, g.ny)) + max_side - 1) / max_side;
 }
 
 }  // namespace
 
-CoarseGrid::CoarseGrid(const HeightMapGeometry& g)
-    : merged(merged_nodes(g)),
+CoarseGrid::CoarseGrid(const HeightMapGeometry& g, int max_side)
+    : merged(merged_nodes(g, max_side)),
       x_m(places(g.origin_x_m, g.spacing_m, static_cast<int>(g.nx), merged)),
       y_m(places(g.origin_y_m, g.spacing_m, static_cast<int>(g.ny), merged)) {}
 

@@ -21,12 +21,12 @@ struct HeightScaleOfPage {
   double unit_m = 0.0;
 };
 
-/// A grid of at most kMaxSide nodes a side. Each of its nodes is the mean of a square of nodes of
+/// A grid of at most `max_side` nodes a side. Each of its nodes is the mean of a square of nodes of
 /// the terrain, `merged` by `merged` of them.
 struct CoarseGrid {
   static constexpr int kMaxSide = 240;
 
-  explicit CoarseGrid(const HeightMapGeometry& geometry);
+  explicit CoarseGrid(const HeightMapGeometry& geometry, int max_side = kMaxSide);
   std::size_t nodes() const { return x_m.size() * y_m.size(); }
   /// The field on this grid, in metres, row by row from the south. The field has the numbers of
   /// nodes of the geometry that the grid was made for.

@@ -12,7 +12,6 @@
 
 #include "firmware/parameters/parameters.h"
 #include "host_sim/core/constants.h"
-#include "host_sim/core/content_hash.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
@@ -23,6 +22,7 @@
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/report/page_curves.h"
 #include "host_sim/run/report/page_terrain.h"
+#include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/simulation/outcome.h"
 #include "version.h"
 
@@ -298,17 +298,6 @@ Json configuration_of(const SessionReader& session) {
   return list;
 }
 
-/// As the summary of the run has it.
-std::string hash_of(std::span<const SessionReader> sessions) {
-  std::vector<std::string> hashes;
-  for (const SessionReader& session : sessions) {
-    if (session.running()) return "none: the run goes on";
-    if (!session.complete()) return "none: the run did not end";
-    hashes.push_back(session.content_hash());
-  }
-  return combined_hash(hashes);
-}
-
 Json identity_of(std::span<const SessionReader> sessions, const RunPageOptions& options) {
   const SessionReader& session = sessions.front();
   const SessionInfo& info = session.info();
@@ -329,7 +318,7 @@ Json identity_of(std::span<const SessionReader> sessions, const RunPageOptions& 
       std::to_string(session.frames()) + " at " + std::to_string(info.tick_rate_hz) + " Hz");
   add("Program of the run", info.program_version);
   add("Program of this page", SCREED_VERSION);
-  add("Content hash", hash_of(sessions));
+  add("Content hash", hash_of_run(sessions));
   return list;
 }
 

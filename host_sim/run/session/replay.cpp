@@ -31,7 +31,7 @@ void check_replayable(const SessionReader& session, const std::filesystem::path&
 }
 
 ReplayResult replay_session(const std::filesystem::path& session_file,
-                            const TaskProgress& progress) {
+                            const ReplayOptions& options) {
   constexpr std::uint64_t kBlockRows = 1024;
   const SessionReader session(session_file);
   check_replayable(session, session_file);
@@ -44,7 +44,7 @@ ReplayResult replay_session(const std::filesystem::path& session_file,
   result.unchanged = !result.complete || !session.missing_columns().empty() ||
                      session.compute_content_hash() == session.content_hash();
 
-  Robot robot(info.board, info.parameters, info.credentials);
+  Robot robot(info.board, options.parameters.value_or(info.parameters), info.credentials);
   RobotOutput output{};  // one for all ticks, as in the main loop
   ContentHash hash;
   std::array<std::uint8_t, kOutputBytes> expected{};
@@ -52,7 +52,7 @@ ReplayResult replay_session(const std::filesystem::path& session_file,
   std::vector<SensorSample> samples;
   std::vector<RobotOutput> outputs;
   while (result.ticks < session.frames()) {
-    report_progress(progress, "replaying", result.ticks, session.frames());
+    report_progress(options.progress, "replaying", result.ticks, session.frames());
     const std::uint64_t count = std::min(kBlockRows, session.frames() - result.ticks);
     samples.resize(count);
     outputs.resize(count);
@@ -60,6 +60,7 @@ ReplayResult replay_session(const std::filesystem::path& session_file,
     session.read(result.ticks, std::span(outputs));
     for (std::uint64_t i = 0; i < count; ++i, ++result.ticks) {
       robot.tick(samples[i], output);
+      if (options.on_tick) options.on_tick(result.ticks, outputs[i], output, robot);
       pack(output, OutputRow(got));
       hash.add_bytes(got);
       if (result.first_difference_tick) continue;

@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
+#include "firmware/parameters/parameters.h"
+#include "hal/sample.h"
 #include "host_sim/core/task_progress.h"
 
 namespace screed {
@@ -25,7 +28,18 @@ struct ReplayResult {
       true;  ///< false when the file's content no longer has the hash it was saved with
 };
 
+class Robot;
 class SessionReader;
+
+struct ReplayOptions {
+  /// In place of the recorded ones: what would the robot have answered?
+  std::optional<Parameters> parameters;
+  /// Told of each tick: its number, the recorded and the replayed output, the robot after it.
+  std::function<void(std::uint64_t tick, const RobotOutput& recorded, const RobotOutput& replayed,
+                     const Robot& robot)>
+      on_tick;
+  TaskProgress progress;  ///< of the task "replaying"
+};
 
 /// Throws InputError, with the file's name, when no robot of this program can be fed the session:
 /// it has no tick, a board constant of 0, or was recorded at another tick rate.
@@ -33,8 +47,8 @@ void check_replayable(const SessionReader& session, const std::filesystem::path&
 
 /// Builds a Robot from the recorded parameters and board constants, feeds it the recorded samples
 /// and compares its outputs byte for byte, of the radio only the valid bytes. Throws InputError
-/// when the file is no session, or as check_replayable(). Reports the task "replaying".
+/// when the file is no session, or as check_replayable().
 ReplayResult replay_session(const std::filesystem::path& session_file,
-                            const TaskProgress& progress = {});
+                            const ReplayOptions& options = {});
 
 }  // namespace screed

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/session/session_turns.h"
 
@@ -207,6 +208,16 @@ std::vector<SessionReader> open_robots(const std::filesystem::path& run) {
                      "; name the session.h5 of one robot instead of the folder");
   }
   return sessions;
+}
+
+std::string hash_of_run(std::span<const SessionReader> sessions) {
+  std::vector<std::string> hashes;
+  for (const SessionReader& session : sessions) {
+    if (session.running()) return "none: the run goes on";
+    if (!session.complete()) return "none: the run did not end";
+    hashes.push_back(session.content_hash());
+  }
+  return combined_hash(hashes);
 }
 
 }  // namespace screed

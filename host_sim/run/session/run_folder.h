@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -76,5 +77,8 @@ class RunFolder {
 /// up to 10 ms later than theirs. Throws InputError as SessionReader does, and when they have not
 /// the same ticks otherwise, which happens in a run that was killed.
 std::vector<SessionReader> open_robots(const std::filesystem::path& run);
+
+/// The content hash of a run, as its summary has it, or why there is none.
+std::string hash_of_run(std::span<const SessionReader> sessions);
 
 }  // namespace screed

@@ -7,7 +7,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/ground_station/telemetry/csv_tables.h"
-#include "host_sim/ground_station/telemetry/mcap_file.h"
+#include "host_sim/ground_station/telemetry/telemetry_mcap.h"
 #include "tools/screed/cli/command.h"
 
 namespace screed {
@@ -40,7 +40,7 @@ int run_decode(const DecodeOptions& options, std::ostream& out, std::ostream& er
     for (const std::string& name : tables.finish()) out << name << "\n";
     if (const auto name = slip.finish(); name.has_value()) out << *name << "\n";
   } else {
-    McapFile file(target);
+    TelemetryMcap file(target);
     for (; more; more = decoder.next(frame)) file.add(frame);
     file.finish();
     out << target << "\n";

@@ -9,7 +9,6 @@
 #include <set>
 #include <string_view>
 
-#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/render/chart/plot_plan.h"
 #include "host_sim/render/chart/svg.h"
@@ -19,10 +18,6 @@
 
 namespace screed {
 namespace {
-
-bool ends_with(const std::string& text, const char* ending) {
-  return std::filesystem::path(text).extension() == ending;
-}
 
 /// What the log says of the signals.
 struct PlotData {
@@ -130,16 +125,8 @@ StackedChart plot_chart(const PlotOptions& options, std::ostream& err) {
 }
 
 int run_plot(const PlotOptions& options, std::ostream& err) {
-  const bool png = ends_with(options.out, ".png");
-  if (!png && !ends_with(options.out, ".svg")) {
-    throw InputError("--out " + options.out + ": the name ends in .svg or .png");
-  }
-  const std::string svg = stacked_chart_svg(plot_chart(options, err));
-  if (png) {
-    write_svg_as_png(options.out, svg);
-  } else {
-    write_file(options.out, svg);
-  }
+  check_picture_name("--out", options.out);
+  write_picture(options.out, stacked_chart_svg(plot_chart(options, err)));
   return 0;
 }
 

@@ -1,21 +1,35 @@
 // `screed replay RUN`: does this build still compute what was recorded? Exit codes: 0 the outputs
-// are identical, 1 they differ, 2 wrong RUN. `screed parity FILE`: does the image compute what the
-// host computes? Exit codes: 0 no byte differs, 1 one does, 2 wrong input.
+// are identical, 1 they differ, 2 wrong RUN. With --set: what would the robot have answered with
+// other parameters? Exit codes: 0, 2 wrong RUN or key. `screed parity FILE`: does the image compute
+// what the host computes? Exit codes: 0 no byte differs, 1 one does, 2 wrong input.
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "firmware/robot/robot.h"
+#include "host_sim/core/errors.h"
 #include "host_sim/core/figures.h"
+#include "host_sim/core/ini_file.h"
 #include "host_sim/core/json.h"
+#include "host_sim/core/record.h"
+#include "host_sim/render/chart/stacked_chart.h"
+#include "host_sim/render/chart/svg.h"
+#include "host_sim/render/picture/color_map.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_layout.h"
+#include "host_sim/run/session/session_reader.h"
+#include "host_sim/run/simulation/outcome.h"
 #include "host_sim/run/simulation/parity.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "host_sim/run/world/image_robot.h"
@@ -30,8 +44,10 @@ namespace {
 
 // ---- replay ----
 
-struct ReplayOptions {
+struct ReplayArguments {
   std::string run;
+  std::vector<std::string> sets;
+  std::optional<std::string> picture;
   bool json = false;
 };
 
@@ -48,12 +64,15 @@ Json json_of(const std::string& run, const ReplayResult& result) {
 }
 
 /// The first robot of a run, with the others, if there are any, as a list.
-void print_json(const std::string& run, const std::vector<ReplayResult>& results) {
-  Json json = json_of(run, results.front());
-  for (size_t i = 1; i < results.size(); ++i) {
-    json["further_robots"].push_back(json_of(folder_of_robot(run, i).string(), results[i]));
-  }
+void print_robots(const std::vector<Json>& robots) {
+  Json json = robots.front();
+  for (size_t i = 1; i < robots.size(); ++i) json["further_robots"].push_back(robots[i]);
   print_json(json, -1);
+}
+
+/// What a user calls the run of a robot.
+std::string run_of_robot(const std::string& run, size_t robot) {
+  return robot == 0 ? run : folder_of_robot(run, robot).string();
 }
 
 void print_text(const std::string& of, const ReplayResult& result) {
@@ -82,20 +101,228 @@ void print_notes(const std::string& of, const ReplayResult& result) {
   }
 }
 
-int replay_run(const ReplayOptions& options) {
-  const std::vector<std::filesystem::path> files = session_files(options.run);
-  std::vector<ReplayResult> results;
+// ---- what if ----
+
+/// The recorded parameters with what the user sets on top.
+Parameters changed_parameters(const SessionInfo& info, const std::vector<std::string>& sets) {
+  Experiment experiment;
+  experiment.parameters = info.parameters;
+  for (const std::string& text : sets) {
+    const IniEntry entry = parse_override(text);
+    const bool algorithm = entry.section == "experiment" && entry.key == "algorithm";
+    if (entry.section != "parameters" && !algorithm) {
+      throw InputError("--set " + text +
+                       ": a recorded drive is what it was; allowed are parameters.KEY and "
+                       "experiment.algorithm");
+    }
+    apply_override(experiment, text);
+    if (algorithm) {
+      experiment.parameters.algorithm() = algorithm_number(experiment.experiment.algorithm);
+    }
+  }
+  if (!experiment.parameters.valid()) {
+    throw InputError("--set: a robot refuses these parameters, which do not fit together");
+  }
+  return experiment.parameters;
+}
+
+/// Recorded and replayed outputs side by side.
+class OutputChanges {
+ public:
+  struct Change {
+    const Column* column;
+    std::uint64_t ticks = 0;
+    std::uint64_t first = 0;
+    int largest = 0;  ///< of a number; 0 for bytes of the radio
+  };
+
+  OutputChanges() {
+    for (const Column& column : kOutputColumns) changes_.push_back({&column});
+  }
+
+  void add(std::uint64_t tick, const RobotOutput& recorded, const RobotOutput& replayed,
+           const Robot& robot) {
+    std::array<std::uint8_t, kOutputBytes> was{};
+    std::array<std::uint8_t, kOutputBytes> is{};
+    pack(recorded, OutputRow(was));
+    pack(replayed, OutputRow(is));
+    for (Change& it : changes_) {
+      const std::size_t size = std::size_t{element_bytes(it.column->type)} * it.column->count;
+      const auto begin = was.begin() + it.column->offset;
+      if (std::equal(begin, begin + static_cast<std::ptrdiff_t>(size),
+                     is.begin() + it.column->offset)) {
+        continue;
+      }
+      if (it.ticks == 0) it.first = tick;
+      ++it.ticks;
+    }
+    note(changes_[0], replayed.duty_left - recorded.duty_left);
+    note(changes_[1], replayed.duty_right - recorded.duty_right);
+    const double time_s = time_after(tick);
+    const auto percent = [](int duty) { return 100.0 * duty / kDutyMax; };
+    // Ten a second are enough to see where the two part.
+    if (tick % 10 == 0) {
+      left_[0].push_back({time_s, percent(recorded.duty_left)});
+      left_[1].push_back({time_s, percent(replayed.duty_left)});
+      right_[0].push_back({time_s, percent(recorded.duty_right)});
+      right_[1].push_back({time_s, percent(replayed.duty_right)});
+    }
+    extend(replayed_states_, time_s, robot.supervisor().state(), robot.leveling().state());
+  }
+
+  /// Of the columns that differ somewhere.
+  std::vector<Change> changes() const {
+    std::vector<Change> some;
+    for (const Change& it : changes_) {
+      if (it.ticks > 0) some.push_back(it);
+    }
+    return some;
+  }
+
+  /// Duty and states over time, as recorded and with the changed parameters.
+  std::string picture(const SessionReader& session, const std::string& title,
+                      const std::string& subtitle) const {
+    std::vector<ChartBand> recorded_states;
+    for_each_frame(session, session.frames(), [&](std::uint64_t tick, const SimFrame& frame) {
+      extend(recorded_states, time_after(tick), static_cast<RobotState>(frame.state),
+             static_cast<message::LevelingState>(frame.leveling_state));
+    });
+    StackedChart chart;
+    chart.title = title;
+    chart.subtitle = subtitle;
+    chart.x_label = "time [s]";
+    for (const auto& [side, series] : {std::pair("left", &left_), std::pair("right", &right_)}) {
+      ChartPanel& panel = chart.panels.emplace_back();
+      panel.title = std::string("duty, ") + side + " [%]";
+      panel.series.push_back({"recorded", (*series)[0], false});
+      panel.series.push_back({"what if", (*series)[1], false});
+      panel.series.back().dashed = true;
+    }
+    chart.panels.push_back({});
+    chart.panels.back().rows = {{"recorded", recorded_states}, {"what if", replayed_states_}};
+    return stacked_chart_svg(chart);
+  }
+
+ private:
+  static double time_after(std::uint64_t tick) {
+    return static_cast<double>(tick + 1) / kTickRate_hz;
+  }
+
+  static void note(Change& change, int difference) {
+    change.largest = std::max(change.largest, std::abs(difference));
+  }
+
+  /// What the algorithm does while it runs, otherwise why it does not.
+  static void extend(std::vector<ChartBand>& bands, double time_s, RobotState state,
+                     message::LevelingState leveling) {
+    const bool running = state == RobotState::kRunning;
+    const std::string name = running ? leveling_state_name(leveling) : state_name(state);
+    if (!bands.empty()) bands.back().end = time_s;
+    if (bands.empty() || bands.back().name != name) {
+      const Color color = state_color(running ? static_cast<std::size_t>(leveling) : 0);
+      bands.push_back({time_s, time_s, name, color});
+    }
+  }
+
+  std::vector<Change> changes_;
+  std::array<std::vector<ChartPoint>, 2> left_;
+  std::array<std::vector<ChartPoint>, 2> right_;
+  std::vector<ChartBand> replayed_states_;
+};
+
+Json json_of(const std::vector<OutputChanges::Change>& changes) {
+  Json list = Json::array();
+  for (const OutputChanges::Change& it : changes) {
+    list.push_back({{"column", it.column->name},
+                    {"ticks", it.ticks},
+                    {"first_tick", it.first},
+                    {"largest", it.column->array ? Json() : Json(it.largest)}});
+  }
+  return list;
+}
+
+void print_changes(const ReplayResult& result, const std::vector<OutputChanges::Change>& changes) {
+  if (changes.empty()) return;
+  print("  {:-18s} {:12s} {:12s} {:12s}\n", "output", "ticks", "first at", "differs by");
+  for (const OutputChanges::Change& it : changes) {
+    const double first_s = static_cast<double>(it.first) / kTickRate_hz;
+    const double share = static_cast<double>(it.ticks) / static_cast<double>(result.ticks);
+    print("  {:-18s} {:12s} {:12s} {:12s}\n", it.column->name, filled("{*100:.1f} %", share),
+          filled("{:.2f} s", first_s),
+          it.largest == 0 ? std::string() : "up to " + std::to_string(it.largest));
+  }
+}
+
+/// The picture of one robot: beside those of others, with its number.
+std::string picture_path(const std::string& path, std::size_t robot, std::size_t robots) {
+  if (robots == 1) return path;
+  const std::filesystem::path name(path);
+  return (name.parent_path() /
+          (name.stem().string() + "_robot_" + std::to_string(robot) + name.extension().string()))
+      .string();
+}
+
+int replay_what_if(const ReplayArguments& arguments) {
+  if (arguments.picture.has_value()) check_picture_name("--picture", *arguments.picture);
+  const std::vector<std::filesystem::path> files = session_files(arguments.run);
+  std::vector<Json> robots;
+  TaskBar bar(arguments.json);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const SessionReader session(files[i]);
+    OutputChanges outputs;
+    ReplayOptions options;
+    options.parameters = changed_parameters(session.info(), arguments.sets);
+    options.on_tick = [&](const auto&... of_tick) { outputs.add(of_tick...); };
+    options.progress = bar.progress();
+    const ReplayResult result = replay_session(files[i], options);
+    bar.clear();
+    const std::string of = files.size() > 1 ? "robot " + std::to_string(i) + ": " : "";
+    print_notes(of, result);
+    if (arguments.picture.has_value()) {
+      std::string changed;
+      for (const std::string& set : arguments.sets) changed += (changed.empty() ? "" : ", ") + set;
+      write_picture(picture_path(*arguments.picture, i, files.size()),
+                    outputs.picture(session, session.info().experiment_name + ": " + of + changed,
+                                    "open loop: what the robot would have answered to what it "
+                                    "sensed on the recorded drive"));
+    }
+    Json json = json_of(run_of_robot(arguments.run, i), result);
+    json["open_loop"] = true;
+    json["changes"] = json_of(outputs.changes());
+    robots.push_back(std::move(json));
+    if (arguments.json) continue;
+    print_text(of, result);
+    print_changes(result, outputs.changes());
+  }
+  if (arguments.json) {
+    print_robots(robots);
+  } else {
+    print(
+        "open loop: the robot sensed what it did on the recorded drive; it does not go where "
+        "these outputs would take it\n");
+  }
+  return 0;
+}
+
+int replay_run(const ReplayArguments& arguments) {
+  if (!arguments.sets.empty()) return replay_what_if(arguments);
+  if (arguments.picture.has_value()) throw UsageError("--picture needs --set");
+  const std::vector<std::filesystem::path> files = session_files(arguments.run);
+  std::vector<Json> robots;
   bool identical = true;
-  TaskBar bar(options.json);
+  TaskBar bar(arguments.json);
   for (size_t i = 0; i < files.size(); ++i) {
-    const ReplayResult& result = results.emplace_back(replay_session(files[i], bar.progress()));
+    ReplayOptions options;
+    options.progress = bar.progress();
+    const ReplayResult result = replay_session(files[i], options);
     identical = identical && !result.first_difference_tick;
     bar.clear();
     const std::string of = files.size() > 1 ? "robot " + std::to_string(i) + ": " : "";
     print_notes(of, result);
-    if (!options.json) print_text(of, result);
+    robots.push_back(json_of(run_of_robot(arguments.run, i), result));
+    if (!arguments.json) print_text(of, result);
   }
-  if (options.json) print_json(options.run, results);
+  if (arguments.json) print_robots(robots);
   return identical ? 0 : 1;
 }
 
@@ -171,12 +398,22 @@ int run_parity_command(const ParityArguments& arguments) {
 }  // namespace
 
 void register_replay_command(Command& root, Program& program) {
-  auto [command, options] = add_subcommand<ReplayOptions>(
+  auto [command, arguments] = add_subcommand<ReplayArguments>(
       root, program, "replay",
       "Feed a recorded run to the firmware again and compare its outputs byte for byte",
       replay_run);
-  command.add_option("RUN", options.run, "Run folder or session.h5")->required();
-  command.add_flag("--json", options.json, "Print the result as JSON");
+  command.add_option("RUN", arguments.run, "Run folder or session.h5")->required();
+  command
+      .add_option("--set", arguments.sets,
+                  "What if: replay with another parameter, parameters.key=value or "
+                  "experiment.algorithm=name, and show which outputs change")
+      ->type_name("KEY=VALUE")
+      ->one_value_each();
+  command
+      .add_option("--picture", arguments.picture,
+                  "Draw duty and states as recorded and with --set: .svg or .png")
+      ->type_name("FILE");
+  command.add_flag("--json", arguments.json, "Print the result as JSON");
 }
 
 void register_parity_command(Command& root, Program& program) {

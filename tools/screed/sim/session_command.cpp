@@ -2,7 +2,9 @@
 // other programs read, and how far dead reckoning was off.
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +16,7 @@
 #include "host_sim/core/json.h"
 #include "host_sim/run/comparison/odometry_errors.h"
 #include "host_sim/run/experiment/run_setup.h"
+#include "host_sim/run/report/run_mcap.h"
 #include "host_sim/run/session/export.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_reader.h"
@@ -42,6 +45,7 @@ struct ExportArguments {
   bool heights = false;
   bool leveling = false;
   bool pictures = false;
+  bool mcap = false;
   std::optional<std::uint64_t> every;
   std::optional<std::uint64_t> first;
   std::optional<std::uint64_t> count;
@@ -121,9 +125,9 @@ int run_info(const InfoArguments& arguments) {
 }
 
 /// The frames the user asks for: of the training drive, or all when there was none.
-FrameRange chosen_range(const ExportArguments& arguments, const SessionReader& session) {
+FrameRange chosen_range(const ExportArguments& arguments, const SessionReader& session, bool all) {
   FrameRange range = training_frames(session);
-  if (arguments.all || range.count == 0) range = {0, session.frames()};
+  if (all || range.count == 0) range = {0, session.frames()};
   const std::uint64_t end = range.first + range.count;
   if (arguments.first.has_value()) {
     if (*arguments.first >= session.frames()) {
@@ -146,12 +150,12 @@ FrameRange chosen_range(const ExportArguments& arguments, const SessionReader& s
 }
 
 /// The robot of a recorded run; none, and a note, when its model is gone by now.
-std::optional<RobotShape> shape_of_run(const SessionReader& session, const fs::path& file) {
+std::optional<Assembly> robot_of_run(const SessionReader& session, const fs::path& file) {
   const RunSetup setup = setup_of(session.info(), fs::absolute(file).parent_path());
   try {
-    return shape_of(robot_model(setup, session.info().board_name), setup.experiment.vehicle.tracks);
+    return robot_model(setup, session.info().board_name);
   } catch (const InputError& error) {
-    std::cerr << "note: the pictures are without the robot: " << error.what() << "\n";
+    std::cerr << "note: what is exported is without the robot: " << error.what() << "\n";
     return std::nullopt;
   }
 }
@@ -168,10 +172,13 @@ void export_all_pictures(const ExportArguments& arguments, std::span<const Sessi
   const SessionReader& session = sessions.front();
   PictureSeries series;
   series.state_names = leveling_state_names();
-  series.shape = shape_of_run(session, paths.file);
+  const RunSetup setup = setup_of(session.info(), {});
+  if (const auto robot = robot_of_run(session, paths.file); robot.has_value()) {
+    series.shape = shape_of(*robot, setup.experiment.vehicle.tracks);
+  }
   std::size_t count = export_run_pictures(paths.folder, sessions, series.shape).size();
   if (session.has_heights()) {
-    const TerrainMeasure measure(setup_of(session.info(), {}).experiment);
+    const TerrainMeasure measure(setup.experiment);
     series.surface = [&](const HeightField& terrain) { return measure.surface(terrain); };
     const std::uint64_t tenth = std::max<std::uint64_t>(1, (range.count + 9) / 10);
     count += export_pictures(sessions, range, arguments.every.value_or(tenth), paths.folder, series,
@@ -188,10 +195,29 @@ void export_all_pictures(const ExportArguments& arguments, std::span<const Sessi
   print("{}: {} pictures\n", paths.folder, count);
 }
 
+/// The whole run, or the frames that the user names, of all robots.
+void export_run_mcap(const ExportArguments& arguments, const fs::path& file, const fs::path& mcap,
+                     TaskBar& bar) {
+  const std::vector<SessionReader> sessions = open_robots(arguments.run);
+  RunMcapOptions options;
+  options.range = chosen_range(arguments, sessions.front(), true);
+  if (arguments.every.has_value()) options.terrain_every = *arguments.every;
+  options.robot = robot_of_run(sessions.front(), file);
+  std::ifstream summary(fs::absolute(file).parent_path() / "summary.json");
+  options.summary.assign(std::istreambuf_iterator<char>(summary), {});  // empty where there is none
+  options.progress = bar.progress();
+  export_mcap(sessions, mcap, options);
+  bar.clear();
+  print("{}: {}, {:.1f} MB\n", mcap, counted(options.range->count, "frame"),
+        static_cast<double>(fs::file_size(mcap)) * 1e-6);
+}
+
 int export_session(const ExportArguments& arguments) {
-  if (!arguments.csv && !arguments.heights && !arguments.leveling && !arguments.pictures) {
+  if (!arguments.csv && !arguments.heights && !arguments.leveling && !arguments.pictures &&
+      !arguments.mcap) {
     throw InputError(
-        "session export: say what: --csv, --heights, --leveling, --pictures or several of them");
+        "session export: say what: --csv, --heights, --leveling, --mcap, --pictures or several of "
+        "them");
   }
   const fs::path file = session_file(arguments.run);
   const SessionReader session(file);
@@ -203,7 +229,7 @@ int export_session(const ExportArguments& arguments) {
   if (arguments.leveling && leveling.empty())
     throw InputError(file.string() +
                      ": has no leveling curve; it is of a program before there were");
-  const FrameRange range = chosen_range(arguments, session);
+  const FrameRange range = chosen_range(arguments, session, arguments.all);
   MadeFolders folders;
   const fs::path out =
       folders.make(arguments.out.has_value() ? fs::path(*arguments.out)
@@ -235,6 +261,7 @@ int export_session(const ExportArguments& arguments) {
     print("{}: {} height maps, black {:.6f} m, white {:.6f} m (scale.json)\n", out / "heights",
           done.files.size(), done.scale.black_m, done.scale.white_m);
   }
+  if (arguments.mcap) export_run_mcap(arguments, file, out / "run.mcap", bar);
   if (arguments.pictures) {
     export_all_pictures(arguments, open_robots(arguments.run), range,
                         {file, folders.make(out / "pictures")}, bar);
@@ -307,7 +334,7 @@ void register_session_command(Command& root, Program& program) {
   info_command.add_flag("--json", info.json, "Print JSON");
 
   auto [command, exported] = add_subcommand<ExportArguments>(
-      *session, program, "export", "Export tables, height maps and pictures", export_session);
+      *session, program, "export", "Export tables, height maps, pictures and MCAP", export_session);
   command.add_option("RUN", exported.run, "Run folder or session file")->required();
   command.add_flag("--csv", exported.csv,
                    "Export thesis Table 5.1 as CSV, with units in the header");
@@ -317,12 +344,16 @@ void register_session_command(Command& root, Program& program) {
                    "Export height maps as 16-bit PNGs, with their scale in scale.json");
   command.add_flag("--leveling", exported.leveling,
                    "Export the leveling curve as CSV, with units in the header");
+  command.add_flag("--mcap", exported.mcap,
+                   "Export the whole run, all robots, as an MCAP file for Foxglove, Lichtblick and "
+                   "PlotJuggler");
   command.add_flag("--pictures", exported.pictures,
                    "Export shaded height maps with the driven path: of the start, the end and what "
                    "changed, and of frames between where heights were recorded");
   add_number(
       command, "--every", exported.every,
-      "Frames between two images (default: 100 for --heights, a tenth of all for --pictures)",
+      "Frames between two terrains (default: 100 for --heights, 500 for --mcap, a tenth of all for "
+      "--pictures)",
       kCountRange);
   add_number(command, "--first", exported.first, "First frame, counted from 0 in the session",
              {0, 1e9});

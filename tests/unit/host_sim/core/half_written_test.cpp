@@ -18,7 +18,7 @@
 #include "host_sim/grid/grid_sweep.h"
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/ground_station/telemetry/csv_tables.h"
-#include "host_sim/ground_station/telemetry/mcap_file.h"
+#include "host_sim/ground_station/telemetry/telemetry_mcap.h"
 #include "host_sim/render/chart/svg.h"
 #include "tests/child_process.h"
 #include "tests/file_size_limit.h"
@@ -165,7 +165,7 @@ TEST_F(HalfWritten, TablesAndMcapOfALog) {
       decode(tables);
     });
     expect_nothing_left(bytes, [&] {
-      McapFile file((folder_ / "radio.mcap").string());
+      TelemetryMcap file((folder_ / "radio.mcap").string());
       decode(file);
     });
   }

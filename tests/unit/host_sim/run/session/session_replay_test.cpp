@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "firmware/robot/robot.h"
 #include "host_sim/core/content_hash.h"
+#include "host_sim/core/json.h"
 #include "host_sim/run/session/replay.h"
 #include "tests/unit/host_sim/run/session/session_fixture.h"
 #include "tools/command_line/program.h"
@@ -172,6 +173,45 @@ TEST_F(SessionTest, TheReplayCommandRefusesWrongInput) {
   EXPECT_EQ(replay_command({(base_ / "missing").string()}).status, 2);
   EXPECT_EQ(replay_command({base_.string()}).status, 2);  // a folder without a session
   EXPECT_EQ(message_of<UsageError>([] { replay_command({}); }), "RUN is required");
+}
+
+TEST_F(SessionTest, WhatIfComparesTheOutputsOfOtherParameters) {
+  const Recording run = robot_run(1500);
+  write_run(file_, run);
+  const std::string same =
+      "parameters.gyro_offset_x=" + std::to_string(run.info.parameters.gyro_offset_x());
+  CommandResult result = replay_command({file_.string(), "--set", same});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.out.find("1500 ticks replayed, outputs identical\nopen loop"), 0U) << result.out;
+
+  // Another zero of the gyroscope is another attitude, which goes down by radio; no motor runs.
+  const std::string other = "parameters.gyro_offset_x=300";
+  const fs::path picture = base_ / "what_if.svg";
+  result = replay_command({file_.string(), "--set", other, "--picture", picture.string()});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.out.find("first difference at tick "), std::string::npos);
+  EXPECT_NE(result.out.find("\n  radio_out "), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("\n  duty_left "), std::string::npos) << result.out;
+  EXPECT_NE(read_text(picture).find("what if"), std::string::npos);
+
+  const Json json = Json::parse(replay_command({file_.string(), "--set", other, "--json"}).out);
+  EXPECT_EQ(json["open_loop"], true);
+  ASSERT_EQ(json["changes"].size(), 1U);
+  EXPECT_EQ(json["changes"][0]["column"], "radio_out");
+  EXPECT_EQ(json["changes"][0]["first_tick"], json["first_difference_tick"]);
+  EXPECT_GT(json["changes"][0]["ticks"].get<int>(), 10);
+}
+
+TEST_F(SessionTest, WhatIfRefusesWhatARecordedDriveCannotChange) {
+  write_run(file_, robot_run(3));
+  for (const char* set : {"map.size=3", "parameters.gyro_offset_x=40000", "parameters.no_such=1",
+                          "experiment.algorithm=nothing"}) {
+    EXPECT_EQ(replay_command({file_.string(), "--set", set}).status, 2) << set;
+  }
+  EXPECT_EQ(replay_command({file_.string(), "--set", "parameters.walk_speed_min=200", "--set",
+                            "parameters.walk_speed_max=100"})
+                .status,
+            2);
 }
 
 }  // namespace

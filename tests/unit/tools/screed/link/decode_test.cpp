@@ -1,5 +1,6 @@
 // Logs as messages, tables, MCAP and pictures.
 #include <gtest/gtest.h>
+#include <zstd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -274,6 +275,17 @@ Number number_at(const std::string& bytes, size_t at) {
   return number;
 }
 
+/// The records in a chunk.
+std::string content_of_chunk(const std::string& chunk) {
+  constexpr size_t kPrefix = 44;  // times, size, checksum, "zstd", packed size
+  EXPECT_EQ(chunk.substr(32, 4), "zstd");
+  std::string content(number_at<uint64_t>(chunk, 16), '\0');
+  EXPECT_EQ(ZSTD_decompress(content.data(), content.size(), chunk.data() + kPrefix,
+                            chunk.size() - kPrefix),
+            content.size());
+  return content;
+}
+
 TEST_F(Decode, McapHoldsTheMessagesAndItsOwnIndex) {
   DecodeOptions options;
   options.log =
@@ -292,7 +304,8 @@ TEST_F(Decode, McapHoldsTheMessagesAndItsOwnIndex) {
   // chunk; offsets of these four groups; footer.
   EXPECT_EQ(kinds, (std::vector<int>{1, 6, 7, 7, 15, 3, 4, 4, 11, 8, 14, 14, 14, 14, 2}));
 
-  const auto inner = records_of(records[1].second.substr(40));
+  const std::string messages = content_of_chunk(records[1].second);
+  const auto inner = records_of(messages);
   ASSERT_EQ(inner.size(), 6U);
   EXPECT_EQ(inner[0].first, 3);
   const std::string& schema = inner[0].second;
@@ -308,7 +321,7 @@ TEST_F(Decode, McapHoldsTheMessagesAndItsOwnIndex) {
   const std::string& index = records[2].second;
   EXPECT_EQ(number_at<uint64_t>(index, 6), 1000000000U);
   const auto place = number_at<uint64_t>(index, 14);
-  EXPECT_EQ(records[1].second[40 + place], 5);
+  EXPECT_EQ(messages[place], 5);
   // The footer leads to the summary.
   const auto summary = number_at<uint64_t>(records.back().second, 0);
   EXPECT_EQ(bytes[summary], 3);

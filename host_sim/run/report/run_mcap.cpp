@@ -1,0 +1,543 @@
+// Rows of a session are messages of ROS 1 as they are: little endian, field by field, no padding
+// (wiki.ros.org/msg). What viewers draw is in Foxglove's schemas, as JSON.
+#include "host_sim/run/report/run_mcap.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "firmware/parameters/parameters.h"
+#include "host_sim/core/base64.h"
+#include "host_sim/core/ini_file.h"
+#include "host_sim/core/json.h"
+#include "host_sim/core/mcap_file.h"
+#include "host_sim/core/record.h"
+#include "host_sim/physics/vehicle/vehicle_state.h"
+#include "host_sim/render/picture/color_map.h"
+#include "host_sim/render/picture/terrain_picture.h"
+#include "host_sim/run/experiment/run_setup.h"
+#include "host_sim/run/report/page_curves.h"
+#include "host_sim/run/report/page_terrain.h"
+#include "host_sim/run/session/run_folder.h"
+
+namespace screed {
+namespace {
+
+constexpr std::uint64_t kBlockRows = 256;
+constexpr std::uint64_t kTicksOfPose = 5;
+/// Nodes of the drawn terrain along its longer side. Its heights are in full beside it.
+constexpr int kDrawnSide = 100;
+constexpr char kWorldFrame[] = "world";
+
+// ---- tables ----
+
+const char* ros_type(ColumnType type) {
+  switch (type) {
+    case ColumnType::kUint8:
+      return "uint8";
+    case ColumnType::kInt16:
+      return "int16";
+    case ColumnType::kUint16:
+      return "uint16";
+    case ColumnType::kInt32:
+      return "int32";
+    case ColumnType::kUint32:
+      return "uint32";
+    case ColumnType::kDouble:
+      return "float64";
+  }
+  return "";
+}
+
+std::string ros_definition(std::span<const Column> columns) {
+  std::string text;
+  for (const Column& column : columns) {
+    text += ros_type(column.type);
+    if (column.array) text += "[" + std::to_string(column.count) + "]";
+    text += std::string(" ") + column.name + "  #";
+    if (column.unit[0] != '\0') text += std::string(" ") + column.unit + ";";
+    text += std::string(" ") + column.meaning + "\n";
+  }
+  return text;
+}
+
+/// Schemas of the tables, each in the file once, whatever robots there are.
+class TableSchemas {
+ public:
+  explicit TableSchemas(McapFile& file)
+      : frame(add(file, "Frame", kFrameColumns)),
+        sample(add(file, "Sample", kSampleColumns)),
+        output(add(file, "Output", kOutputColumns)),
+        leveling(add(file, "Leveling", kLevelingColumns)) {}
+
+  McapFile::Id frame;
+  McapFile::Id sample;
+  McapFile::Id output;
+  McapFile::Id leveling;
+
+ private:
+  static McapFile::Id add(McapFile& file, const char* name, std::span<const Column> columns) {
+    return file.add_schema(std::string("screed/") + name, "ros1msg", ros_definition(columns));
+  }
+};
+
+// ---- schemas of Foxglove (github.com/foxglove/foxglove-sdk, schemas/jsonschema) ----
+
+namespace foxglove {
+
+using Fields = std::vector<std::pair<const char*, Json>>;
+
+Json object_of(const Fields& fields) {
+  Json properties = Json::object();
+  for (const auto& [name, schema] : fields) properties[name] = schema;
+  return {{"type", "object"}, {"properties", properties}};
+}
+
+Json list_of(Json item) {
+  return {{"type", "array"}, {"items", std::move(item)}};
+}
+Json number() {
+  return {{"type", "number"}};
+}
+Json integer() {
+  return {{"type", "integer"}};
+}
+Json text() {
+  return {{"type", "string"}};
+}
+Json truth() {
+  return {{"type", "boolean"}};
+}
+Json bytes() {
+  return {{"type", "string"}, {"contentEncoding", "base64"}};
+}
+Json time() {
+  return object_of({{"sec", integer()}, {"nsec", integer()}});
+}
+Json vector() {
+  return object_of({{"x", number()}, {"y", number()}, {"z", number()}});
+}
+Json color() {
+  return object_of({{"r", number()}, {"g", number()}, {"b", number()}, {"a", number()}});
+}
+Json quaternion() {
+  return object_of({{"x", number()}, {"y", number()}, {"z", number()}, {"w", number()}});
+}
+Json pose() {
+  return object_of({{"position", vector()}, {"orientation", quaternion()}});
+}
+
+Json transforms() {
+  return object_of({{"transforms", list_of(object_of({{"timestamp", time()},
+                                                      {"parent_frame_id", text()},
+                                                      {"child_frame_id", text()},
+                                                      {"translation", vector()},
+                                                      {"rotation", quaternion()}}))}});
+}
+
+/// What an entity can show. All have to be there.
+constexpr const char* kEntityLists[] = {"metadata", "arrows",    "cubes", "spheres", "cylinders",
+                                        "lines",    "triangles", "texts", "models"};
+
+Json scene() {
+  const Json cube = object_of({{"pose", pose()}, {"size", vector()}, {"color", color()}});
+  const Json triangles = object_of({{"pose", pose()},
+                                    {"points", list_of(vector())},
+                                    {"color", color()},
+                                    {"colors", list_of(color())},
+                                    {"indices", list_of(integer())}});
+  Json entity = object_of({{"timestamp", time()},
+                           {"frame_id", text()},
+                           {"id", text()},
+                           {"lifetime", time()},
+                           {"frame_locked", truth()}});
+  for (const char* list : kEntityLists) entity["properties"][list] = list_of(object_of({}));
+  entity["properties"]["cubes"] = list_of(cube);
+  entity["properties"]["triangles"] = list_of(triangles);
+  return object_of(
+      {{"deletions", list_of(object_of({{"timestamp", time()}}))}, {"entities", list_of(entity)}});
+}
+
+Json grid() {
+  return object_of(
+      {{"timestamp", time()},
+       {"frame_id", text()},
+       {"pose", pose()},
+       {"column_count", integer()},
+       {"cell_size", object_of({{"x", number()}, {"y", number()}})},
+       {"row_stride", integer()},
+       {"cell_stride", integer()},
+       {"fields",
+        list_of(object_of({{"name", text()}, {"offset", integer()}, {"type", integer()}}))},
+       {"data", bytes()}});
+}
+
+Json log() {
+  return object_of({{"timestamp", time()},
+                    {"level", integer()},
+                    {"message", text()},
+                    {"name", text()},
+                    {"file", text()},
+                    {"line", integer()}});
+}
+
+}  // namespace foxglove
+
+McapFile::Id add_json_channel(McapFile& file, const char* topic, const char* schema,
+                              const Json& definition) {
+  return file.add_channel(topic, "json", file.add_schema(schema, "jsonschema", definition.dump()));
+}
+
+// ---- values ----
+
+Json timestamp(std::uint64_t time_ns) {
+  constexpr std::uint64_t kNsPerS = 1000000000U;
+  return {{"sec", time_ns / kNsPerS}, {"nsec", time_ns % kNsPerS}};
+}
+
+Json vector_of(const Eigen::Vector3d& v) {
+  return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}};
+}
+
+Json quaternion_of(const Eigen::Quaterniond& q) {
+  return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}};
+}
+
+Json pose_at(const Eigen::Vector3d& place) {
+  return {{"position", vector_of(place)},
+          {"orientation", quaternion_of(Eigen::Quaterniond::Identity())}};
+}
+
+Json color_of(const Color& it) {
+  return {{"r", it.red}, {"g", it.green}, {"b", it.blue}, {"a", it.alpha}};
+}
+
+/// Without anything to see yet.
+Json entity(std::uint64_t time_ns, const std::string& frame, const std::string& id) {
+  Json json = {{"timestamp", timestamp(time_ns)},
+               {"frame_id", frame},
+               {"id", id},
+               {"lifetime", timestamp(0)},  // until one of the same id
+               {"frame_locked", true}};
+  for (const char* list : foxglove::kEntityLists) json[list] = Json::array();
+  return json;
+}
+
+Json scene_of(Json entities) {
+  return {{"deletions", Json::array()}, {"entities", std::move(entities)}};
+}
+
+// ---- robots ----
+
+Json cube_of(const RobotPlate& plate, double bottom, double top, const Color& color) {
+  return {{"pose", pose_at({0.5 * (plate.back + plate.front), 0.5 * (plate.left + plate.right),
+                            0.5 * (bottom + top)})},
+          {"size", vector_of({plate.front - plate.back, plate.left - plate.right, top - bottom})},
+          {"color", color_of(color)}};
+}
+
+/// Running gear and hull as boxes in the robot's frame.
+Json body_of(const Assembly& robot, bool tracks, std::size_t number, const std::string& frame) {
+  constexpr Color kGear{0.2, 0.2, 0.2};
+  const RobotShape shape = shape_of(robot, tracks);
+  const AssemblyWheel& wheel = robot.wheels[0][0];
+  const double axle = wheel.centre.z();
+  Json body = entity(0, frame, frame);
+  for (const RobotPlate& gear : shape.running_gear) {
+    body["cubes"].push_back(cube_of(gear, axle - wheel.radius_m, axle + wheel.radius_m, kGear));
+  }
+  body["cubes"].push_back(cube_of(shape.hull, axle - 0.3 * wheel.radius_m,
+                                  axle + 1.3 * wheel.radius_m, category_color(number)));
+  return body;
+}
+
+/// What one robot recorded, row by row.
+class RobotTopics {
+ public:
+  RobotTopics(McapFile& file, const TableSchemas& schemas, const SessionReader& session,
+              std::size_t number)
+      : file_(file), session_(session), name_("robot_" + std::to_string(number)) {
+    frames_ = file.add_channel("/" + name_ + "/frames", "ros1", schemas.frame);
+    samples_ = file.add_channel("/" + name_ + "/samples", "ros1", schemas.sample);
+    outputs_ = file.add_channel("/" + name_ + "/outputs", "ros1", schemas.output);
+  }
+
+  const std::string& name() const { return name_; }
+  const SessionReader& session() const { return session_; }
+
+  /// Reads rows [first, first + count), less at the end of the session.
+  void read(std::uint64_t first, std::uint64_t count) {
+    const std::uint64_t end = std::min(first + count, session_.frames());
+    const std::size_t rows = first < end ? end - first : 0;
+    frame_rows_.resize(rows);
+    sample_rows_.resize(rows);
+    output_rows_.resize(rows);
+    if (rows == 0) return;
+    session_.read(first, std::span(frame_rows_));
+    session_.read(first, std::span(sample_rows_));
+    session_.read(first, std::span(output_rows_));
+  }
+
+  /// Row i of those that were read; null behind the end of the session.
+  const SimFrame* frame(std::size_t i) const {
+    return i < frame_rows_.size() ? &frame_rows_[i] : nullptr;
+  }
+
+  void write(std::size_t i, std::uint64_t time_ns) {
+    write_row<kFrameBytes>(frames_, time_ns, frame_rows_[i]);
+    write_row<kSampleBytes>(samples_, time_ns, sample_rows_[i]);
+    write_row<kOutputBytes>(outputs_, time_ns, output_rows_[i]);
+    events_.add(frame_rows_[i]);
+  }
+
+  /// The events that have come since the last call.
+  template <class Use>
+  void for_each_new_event(Use use) {
+    for (; told_ < events_.events().size(); ++told_) use(events_.events()[told_].text);
+  }
+
+ private:
+  template <std::size_t kBytes, class Row>
+  void write_row(McapFile::Id channel, std::uint64_t time_ns, const Row& row) {
+    std::array<std::uint8_t, kBytes> bytes{};
+    pack(row, bytes);
+    file_.add_message(channel, time_ns, bytes);
+  }
+
+  McapFile& file_;
+  const SessionReader& session_;
+  std::string name_;
+  McapFile::Id frames_ = 0;
+  McapFile::Id samples_ = 0;
+  McapFile::Id outputs_ = 0;
+  std::vector<SimFrame> frame_rows_;
+  std::vector<SensorSample> sample_rows_;
+  std::vector<RobotOutput> output_rows_;
+  PageEvents events_;
+  std::size_t told_ = 0;
+};
+
+Json transform_of(const RobotTopics& robot, const SimFrame& frame, std::uint64_t time_ns) {
+  const Eigen::Quaterniond rotation(rotation_from({frame.roll, frame.pitch, frame.yaw}));
+  return {{"timestamp", timestamp(time_ns)},
+          {"parent_frame_id", kWorldFrame},
+          {"child_frame_id", robot.name()},
+          {"translation", vector_of({frame.x, frame.y, frame.z})},
+          {"rotation", quaternion_of(rotation)}};
+}
+
+bool has_pose(const SimFrame& frame) {
+  return std::isfinite(frame.x + frame.y + frame.z + frame.roll + frame.pitch + frame.yaw);
+}
+
+// ---- terrain ----
+
+class TerrainTopics {
+ public:
+  TerrainTopics(McapFile& file, const SessionReader& session) : file_(file), session_(session) {
+    if (const auto before = session.terrain_before(); before.has_value()) {
+      const auto [low, high] = std::ranges::minmax(before->heights);
+      extremes_ = session.has_heights() ? session.height_extremes() : HeightExtremes{low, high};
+    }
+    scene_ = add_json_channel(file, "/terrain", "foxglove.SceneUpdate", foxglove::scene());
+    grid_ = add_json_channel(file, "/heights", "foxglove.Grid", foxglove::grid());
+  }
+
+  void write(const HeightMap& map, std::uint64_t time_ns) {
+    file_.add_message(grid_, time_ns, grid_of(map.geometry, map.heights, time_ns).dump());
+    file_.add_message(scene_, time_ns, scene_of(map, time_ns).dump());
+  }
+
+ private:
+  static Json grid_of(const HeightMapGeometry& g, std::span<const std::int32_t> units,
+                      std::uint64_t time_ns) {
+    constexpr int kFloat32 = 7;
+    std::vector<float> heights_m;
+    heights_m.reserve(units.size());
+    for (const std::int32_t unit : units) {
+      heights_m.push_back(static_cast<float>(unit * g.unit_m));
+    }
+    const std::span<const std::uint8_t> data(
+        reinterpret_cast<const std::uint8_t*>(heights_m.data()), sizeof(float) * heights_m.size());
+    // A cell of the grid lies about its node.
+    const double half_m = 0.5 * g.spacing_m;
+    return {{"timestamp", timestamp(time_ns)},
+            {"frame_id", kWorldFrame},
+            {"pose", pose_at({g.origin_x_m - half_m, g.origin_y_m - half_m, 0.0})},
+            {"column_count", g.nx},
+            {"cell_size", {{"x", g.spacing_m}, {"y", g.spacing_m}}},
+            {"row_stride", sizeof(float) * g.nx},
+            {"cell_stride", sizeof(float)},
+            {"fields", Json::array({{{"name", "height"}, {"offset", 0}, {"type", kFloat32}}})},
+            {"data", base64(data)}};
+  }
+
+  Json scene_of(const HeightMap& map, std::uint64_t time_ns) const {
+    const CoarseGrid grid(map.geometry, kDrawnSide);
+    const std::vector<double> heights_m = grid.heights_m(field_of(map));
+    const double low_m = extremes_.lowest * map.geometry.unit_m;
+    const double span_m = std::max(1e-9, extremes_.highest * map.geometry.unit_m - low_m);
+    Json points = Json::array();
+    Json colors = Json::array();
+    Json corners = Json::array();
+    const std::size_t nx = grid.x_m.size();
+    for (std::size_t i = 0; i < heights_m.size(); ++i) {
+      points.push_back({{"x", rounded(grid.x_m[i % nx])},
+                        {"y", rounded(grid.y_m[i / nx])},
+                        {"z", rounded(heights_m[i])}});
+      const Color shade = height_color((heights_m[i] - low_m) / span_m);
+      colors.push_back({{"r", percent(shade.red)},
+                        {"g", percent(shade.green)},
+                        {"b", percent(shade.blue)},
+                        {"a", 1}});
+      if (i % nx + 1 == nx || i / nx + 1 == grid.y_m.size()) continue;
+      for (const std::size_t corner : {i, i + 1, i + nx, i + nx, i + 1, i + nx + 1}) {
+        corners.push_back(corner);
+      }
+    }
+    Json terrain = entity(time_ns, kWorldFrame, "terrain");
+    terrain["triangles"].push_back({{"pose", pose_at(Eigen::Vector3d::Zero())},
+                                    {"points", std::move(points)},
+                                    {"color", color_of({})},
+                                    {"colors", std::move(colors)},
+                                    {"indices", std::move(corners)}});
+    return screed::scene_of(Json::array({std::move(terrain)}));
+  }
+
+  /// A picture needs no more than a hundredth of a millimetre, and the file less room.
+  static double rounded(double length_m) { return std::round(length_m * 1e5) / 1e5; }
+  static double percent(double share) { return std::round(share * 100.0) / 100.0; }
+
+  McapFile& file_;
+  const SessionReader& session_;
+  HeightExtremes extremes_{};
+  McapFile::Id scene_ = 0;
+  McapFile::Id grid_ = 0;
+};
+
+// ---- what the run was made of ----
+
+std::string experiment_without_key(const SessionInfo& info) {
+  std::string text;
+  std::string section;
+  for (const IniEntry& it : read_ini_text(info.experiment_text, "the experiment")) {
+    if (it.section != section) text += "[" + it.section + "]\n";
+    section = it.section;
+    text += it.key + " = " + (is_secret(it) ? kSecretText : it.value) + "\n";
+  }
+  return text;
+}
+
+void add_identity(McapFile& file, std::span<const SessionReader> sessions,
+                  const std::string& summary) {
+  const SessionInfo& info = sessions.front().info();
+  std::map<std::string, std::string> parameters;
+  for (const ParameterInfo& it : kParameterTable) {
+    parameters[it.name] = std::to_string(info.parameters.values[it.number]);
+  }
+  file.add_metadata("run", {{"experiment", info.experiment_name},
+                            {"seed", std::to_string(info.seed)},
+                            {"board", info.board_name},
+                            {"program", info.program_version},
+                            {"arithmetic", info.arithmetic},
+                            {"content_hash", hash_of_run(sessions)}});
+  file.add_metadata("parameters", parameters);
+  file.add_attachment("experiment.ini", "text/plain", experiment_without_key(info));
+  if (!summary.empty()) file.add_attachment("summary.json", "application/json", summary);
+}
+
+}  // namespace
+
+void export_mcap(std::span<const SessionReader> sessions, const std::filesystem::path& mcap,
+                 const RunMcapOptions& options) {
+  const SessionReader& first = sessions.front();
+  const FrameRange range = options.range.value_or(FrameRange{0, first.frames()});
+  const std::uint64_t end = range.first + range.count;
+  const std::uint64_t tick_ns = 1000000000U / first.info().tick_rate_hz;
+  McapFile file(mcap);
+  add_identity(file, sessions, options.summary);
+  const TableSchemas schemas(file);
+  std::vector<RobotTopics> robots;
+  for (const SessionReader& session : sessions) {
+    robots.emplace_back(file, schemas, session, robots.size());
+  }
+  const auto poses =
+      add_json_channel(file, "/tf", "foxglove.FrameTransforms", foxglove::transforms());
+  const auto events = add_json_channel(file, "/events", "foxglove.Log", foxglove::log());
+  const auto curve = file.add_channel("/leveling", "ros1", schemas.leveling);
+  TerrainTopics terrain(file, first);
+
+  if (options.robot.has_value()) {
+    const bool tracks = setup_of(first.info(), {}).experiment.vehicle.tracks;
+    Json bodies = Json::array();
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      bodies.push_back(body_of(*options.robot, tracks, i, robots[i].name()));
+    }
+    const auto channel =
+        add_json_channel(file, "/robots", "foxglove.SceneUpdate", foxglove::scene());
+    file.add_message(channel, range.first * tick_ns, scene_of(std::move(bodies)).dump());
+  }
+  if (const auto before = first.terrain_before(); before.has_value() && range.first == 0) {
+    terrain.write(*before, 0);
+  }
+
+  const std::vector<LevelingPoint> points = first.leveling();
+  auto point = points.begin();
+  const auto write_curve = [&](std::uint64_t from_ns, std::uint64_t to_ns) {
+    for (; point != points.end(); ++point) {
+      const auto time_ns = static_cast<std::uint64_t>(std::llround(point->time * 1e9));
+      if (time_ns > to_ns) break;
+      if (time_ns < from_ns) continue;
+      file.add_message(curve, time_ns,
+                       std::span(reinterpret_cast<const std::uint8_t*>(&*point), kLevelingBytes));
+    }
+  };
+
+  for (std::uint64_t block = range.first; block < end; block += kBlockRows) {
+    report_progress(options.progress, "exporting the run", block - range.first, range.count);
+    const std::uint64_t rows = std::min(kBlockRows, end - block);
+    for (RobotTopics& robot : robots) robot.read(block, rows);
+    for (std::uint64_t i = 0; i < rows; ++i) {
+      const std::uint64_t tick = block + i + 1;
+      const std::uint64_t time_ns = tick * tick_ns;
+      Json transforms = Json::array();
+      for (RobotTopics& robot : robots) {
+        const SimFrame* const frame = robot.frame(i);
+        if (frame == nullptr) continue;
+        robot.write(i, time_ns);
+        if (has_pose(*frame)) transforms.push_back(transform_of(robot, *frame, time_ns));
+        robot.for_each_new_event([&](const std::string& text) {
+          constexpr int kInfo = 2;
+          constexpr int kWarning = 3;
+          const bool fault = text.starts_with("fault: ");
+          file.add_message(events, time_ns,
+                           Json{{"timestamp", timestamp(time_ns)},
+                                {"level", fault ? kWarning : kInfo},
+                                {"message", text},
+                                {"name", robot.name()},
+                                {"file", ""},
+                                {"line", 0}}
+                               .dump());
+        });
+      }
+      if ((tick - 1) % kTicksOfPose == 0 || tick == end) {
+        file.add_message(poses, time_ns, Json{{"transforms", std::move(transforms)}}.dump());
+      }
+      write_curve(range.first * tick_ns, time_ns);
+      if (first.has_heights() && (tick % options.terrain_every == 0 || tick == end)) {
+        terrain.write(first.heights_after(tick), time_ns);
+      }
+    }
+  }
+  if (const auto after = first.terrain_after();
+      after.has_value() && !first.has_heights() && end == first.frames()) {
+    terrain.write(*after, end * tick_ns);
+  }
+  file.finish();
+}
+
+}  // namespace screed
