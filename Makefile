@@ -20,7 +20,7 @@ PACKAGE_LISTS := tools/debian-packages.txt \
     $(filter arm64,$(BUILD)),tools/arm64/debian-packages.txt)) \
   $(call packages_for,test-can,tests/can) $(call packages_for,test-slurm,tests/slurm) \
   $(call packages_for,test-python test-tutorial,tests/python) $(call packages_for,test-report,tests/report) \
-  $(call packages_for,test-interface,tests/interface) \
+  $(call packages_for,test-interface,tests/interface) $(call packages_for,packages test-packages,tools/package) \
   $(call packages_for,camera test-camera,tools/camera) $(call packages_for,pictures,tools/pictures) \
   $(if $(shell command -v npm),,$(call packages_for,build report-page install test-install test-report,tools/report))
 BUILD_FILES := Makefile $(sort $(wildcard $(addsuffix /*.mk,\
@@ -55,6 +55,7 @@ include tools/arduino/arduino.mk
 include tools/report/report.mk
 include tests/tests.mk
 include tools/flash/flash.mk
+include tools/package/package.mk
 include tools/bench/bench.mk
 include tools/bench/telemetry/telemetry_lab.mk
 include tests/fuzz/fuzz.mk

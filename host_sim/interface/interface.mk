@@ -4,6 +4,9 @@
 
 # Changes when programs that were linked before would no longer run.
 INTERFACE_ABI := 0
+# Where libraries lie below PREFIX, and the way back from their pkg-config files.
+LIBDIR ?= lib
+PC_UP := $(subst $(empty) ,/,$(patsubst %,..,$(subst /, ,$(LIBDIR)/pkgconfig)))
 INTERFACE_HEADERS := $(wildcard host_sim/interface/screed/*.h)
 # NAME.symbols: the functions of libNAME, one a line, so that what leaves or joins shows.
 INTERFACE_NAMES := screed-soil screed-core screed
@@ -24,7 +27,7 @@ $(B)/lib$(1).so.$(INTERFACE_ABI): $(INTERFACE_OBJECTS) $(B)/$(1).map $(B)/link.f
 	  -Wl,-z,defs $$(call only_needed,$(1)) $(INTERFACE_OBJECTS) -Wl,--as-needed $$(interface_libraries_$(1)) -o $$@
 	@ln -sfn $$(@F) $$(basename $$@)
 $(B)/$(1).pc: host_sim/interface/screed.pc.in FORCE
-	@sed 's|@NAME@|$(1)|; s|@VERSION@|$(firstword $(VERSION_WORDS))|' $$< | $$(WRITE_CHANGED)
+	@sed 's|@NAME@|$(1)|; s|@VERSION@|$(firstword $(VERSION_WORDS))|; s|@UP@|$(PC_UP)|' $$< | $$(WRITE_CHANGED)
 endef
 $(foreach name,$(INTERFACE_NAMES),$(eval $(call interface_library,$(name))))
 define interface_archive
@@ -46,14 +49,14 @@ INTERFACE_LIBRARIES := $(INTERFACE_SHARED) $(INTERFACE_STATIC) $(INTERFACE_PC)
 libraries: $(INTERFACE_LIBRARIES)  ## build/<BUILD>/libscreed-soil, -core and libscreed, for other programs (C)
 INSTALLED_MODULE := lib/python3/dist-packages/screed
 INSTALLED_LIBRARIES := $(INSTALLED_MODULE) include/screed \
-  $(addprefix lib/,$(addprefix pkgconfig/,$(notdir $(INTERFACE_PC))) \
+  $(addprefix $(LIBDIR)/,$(addprefix pkgconfig/,$(notdir $(INTERFACE_PC))) \
   $(notdir $(INTERFACE_SHARED) $(basename $(INTERFACE_SHARED)) $(INTERFACE_STATIC)))
 install: install-libraries
 install-libraries: $(INTERFACE_LIBRARIES)  ## install the C libraries and the Python module alone (PREFIX=/usr/local)
 	install -D -m 644 -t $(INTO)/include/screed $(INTERFACE_HEADERS)
-	install -D -m 644 -t $(INTO)/lib $(INTERFACE_SHARED) $(INTERFACE_STATIC)
-	for it in $(notdir $(INTERFACE_SHARED)) ; do ln -sfn $$it $(INTO)/lib/$${it%.*} ; done
-	install -D -m 644 -t $(INTO)/lib/pkgconfig $(INTERFACE_PC)
+	install -D -m 644 -t $(INTO)/$(LIBDIR) $(INTERFACE_SHARED) $(INTERFACE_STATIC)
+	for it in $(notdir $(INTERFACE_SHARED)) ; do ln -sfn $$it $(INTO)/$(LIBDIR)/$${it%.*} ; done
+	install -D -m 644 -t $(INTO)/$(LIBDIR)/pkgconfig $(INTERFACE_PC)
 	install -D -m 644 -t $(INTO)/$(INSTALLED_MODULE) $(wildcard tools/python/screed/*.py)
 test-interface: $(INTERFACE_LIBRARIES) $(SCREED)  ## the C libraries as installed: names, examples with ODE and MuJoCo
 	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/interface/run.sh

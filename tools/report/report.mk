@@ -19,9 +19,16 @@ $(REPORT_WORK)/packages: tools/report/package.json tools/report/package-lock.jso
 	@cp $^ $(REPORT_WORK)
 	@cd $(REPORT_WORK) && $(NPM_CI) > /dev/null
 	@touch $@
+# A release has the page made: whoever builds it needs neither npm nor a network.
+BUILT_PAGE := $(wildcard tools/report/built_page.html)
+ifneq ($(BUILT_PAGE),)
+$(REPORT_PAGE): $(BUILT_PAGE)
+	@install -D -m 644 $< $@
+else
 $(REPORT_PAGE): $(REPORT_SOURCES) $(REPORT_WORK)/packages
 	@echo "  PAGE $@"
 	@cp -r $(filter tools/report/%,$(filter-out %.js,$(REPORT_SOURCES))) tools/report/src $(REPORT_WORK)
 	@cd $(REPORT_WORK) && node build.mjs ../page.html.new
 	@mv $@.new $@
+endif
 build: $(REPORT_PAGE)
