@@ -20,12 +20,21 @@
 #include "host_sim/render/picture/color_map.h"
 #include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/run/experiment/run_setup.h"
+#include "host_sim/run/report/foxglove.h"
 #include "host_sim/run/report/page_curves.h"
 #include "host_sim/run/report/page_terrain.h"
 #include "host_sim/run/session/run_folder.h"
 
 namespace screed {
 namespace {
+
+using foxglove::color_of;
+using foxglove::entity;
+using foxglove::pose_at;
+using foxglove::quaternion_of;
+using foxglove::scene_of;
+using foxglove::timestamp;
+using foxglove::vector_of;
 
 constexpr std::uint64_t kBlockRows = 256;
 constexpr std::uint64_t kTicksOfPose = 5;
@@ -85,150 +94,9 @@ class TableSchemas {
   }
 };
 
-// ---- schemas of Foxglove (github.com/foxglove/foxglove-sdk, schemas/jsonschema) ----
-
-namespace foxglove {
-
-using Fields = std::vector<std::pair<const char*, Json>>;
-
-Json object_of(const Fields& fields) {
-  Json properties = Json::object();
-  for (const auto& [name, schema] : fields) properties[name] = schema;
-  return {{"type", "object"}, {"properties", properties}};
-}
-
-Json list_of(Json item) {
-  return {{"type", "array"}, {"items", std::move(item)}};
-}
-Json number() {
-  return {{"type", "number"}};
-}
-Json integer() {
-  return {{"type", "integer"}};
-}
-Json text() {
-  return {{"type", "string"}};
-}
-Json truth() {
-  return {{"type", "boolean"}};
-}
-Json bytes() {
-  return {{"type", "string"}, {"contentEncoding", "base64"}};
-}
-Json time() {
-  return object_of({{"sec", integer()}, {"nsec", integer()}});
-}
-Json vector() {
-  return object_of({{"x", number()}, {"y", number()}, {"z", number()}});
-}
-Json color() {
-  return object_of({{"r", number()}, {"g", number()}, {"b", number()}, {"a", number()}});
-}
-Json quaternion() {
-  return object_of({{"x", number()}, {"y", number()}, {"z", number()}, {"w", number()}});
-}
-Json pose() {
-  return object_of({{"position", vector()}, {"orientation", quaternion()}});
-}
-
-Json transforms() {
-  return object_of({{"transforms", list_of(object_of({{"timestamp", time()},
-                                                      {"parent_frame_id", text()},
-                                                      {"child_frame_id", text()},
-                                                      {"translation", vector()},
-                                                      {"rotation", quaternion()}}))}});
-}
-
-/// What an entity can show. All have to be there.
-constexpr const char* kEntityLists[] = {"metadata", "arrows",    "cubes", "spheres", "cylinders",
-                                        "lines",    "triangles", "texts", "models"};
-
-Json scene() {
-  const Json cube = object_of({{"pose", pose()}, {"size", vector()}, {"color", color()}});
-  const Json triangles = object_of({{"pose", pose()},
-                                    {"points", list_of(vector())},
-                                    {"color", color()},
-                                    {"colors", list_of(color())},
-                                    {"indices", list_of(integer())}});
-  Json entity = object_of({{"timestamp", time()},
-                           {"frame_id", text()},
-                           {"id", text()},
-                           {"lifetime", time()},
-                           {"frame_locked", truth()}});
-  for (const char* list : kEntityLists) entity["properties"][list] = list_of(object_of({}));
-  entity["properties"]["cubes"] = list_of(cube);
-  entity["properties"]["triangles"] = list_of(triangles);
-  return object_of(
-      {{"deletions", list_of(object_of({{"timestamp", time()}}))}, {"entities", list_of(entity)}});
-}
-
-Json grid() {
-  return object_of(
-      {{"timestamp", time()},
-       {"frame_id", text()},
-       {"pose", pose()},
-       {"column_count", integer()},
-       {"cell_size", object_of({{"x", number()}, {"y", number()}})},
-       {"row_stride", integer()},
-       {"cell_stride", integer()},
-       {"fields",
-        list_of(object_of({{"name", text()}, {"offset", integer()}, {"type", integer()}}))},
-       {"data", bytes()}});
-}
-
-Json log() {
-  return object_of({{"timestamp", time()},
-                    {"level", integer()},
-                    {"message", text()},
-                    {"name", text()},
-                    {"file", text()},
-                    {"line", integer()}});
-}
-
-}  // namespace foxglove
-
 McapFile::Id add_json_channel(McapFile& file, const char* topic, const char* schema,
                               const Json& definition) {
   return file.add_channel(topic, "json", file.add_schema(schema, "jsonschema", definition.dump()));
-}
-
-// ---- values ----
-
-Json timestamp(std::uint64_t time_ns) {
-  constexpr std::uint64_t kNsPerS = 1000000000U;
-  return {{"sec", time_ns / kNsPerS}, {"nsec", time_ns % kNsPerS}};
-}
-
-Json vector_of(const Eigen::Vector3d& v) {
-  return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}};
-}
-
-Json quaternion_of(const Eigen::Quaterniond& q) {
-  return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}};
-}
-
-Json pose_at(const Eigen::Vector3d& place) {
-  return {{"position", vector_of(place)},
-          {"orientation", quaternion_of(Eigen::Quaterniond::Identity())}};
-}
-
-Json color_of(const Color& it) {
-  return {{"r", it.red}, {"g", it.green}, {"b", it.blue}, {"a", it.alpha}};
-}
-
-/// Without anything to see yet.
-Json entity(std::uint64_t time_ns, const std::string& frame, const std::string& id) {
-  Json json = {{"timestamp", timestamp(time_ns)},
-               {"frame_id", frame},
-               {"id", id},
-               {"lifetime", timestamp(0)},  // until one of the same id
-               {"frame_locked", true}};
-  for (const char* list : foxglove::kEntityLists) json[list] = Json::array();
-  return json;
-}
-
-Json scene_of(Json entities) {
-  return {{"deletions", Json::array()}, {"entities", std::move(entities)}};
 }
 
 // ---- robots ----
@@ -343,13 +211,13 @@ class TerrainTopics {
       const auto [low, high] = std::ranges::minmax(before->heights);
       extremes_ = session.has_heights() ? session.height_extremes() : HeightExtremes{low, high};
     }
-    scene_ = add_json_channel(file, "/terrain", "foxglove.SceneUpdate", foxglove::scene());
-    grid_ = add_json_channel(file, "/heights", "foxglove.Grid", foxglove::grid());
+    scene_ = add_json_channel(file, "/terrain", "foxglove.SceneUpdate", foxglove::scene_schema());
+    grid_ = add_json_channel(file, "/heights", "foxglove.Grid", foxglove::grid_schema());
   }
 
   void write(const HeightMap& map, std::uint64_t time_ns) {
     file_.add_message(grid_, time_ns, grid_of(map.geometry, map.heights, time_ns).dump());
-    file_.add_message(scene_, time_ns, scene_of(map, time_ns).dump());
+    file_.add_message(scene_, time_ns, drawn(map, time_ns).dump());
   }
 
  private:
@@ -376,7 +244,7 @@ class TerrainTopics {
             {"data", base64(data)}};
   }
 
-  Json scene_of(const HeightMap& map, std::uint64_t time_ns) const {
+  Json drawn(const HeightMap& map, std::uint64_t time_ns) const {
     const CoarseGrid grid(map.geometry, kDrawnSide);
     const std::vector<double> heights_m = grid.heights_m(field_of(map));
     const double low_m = extremes_.lowest * map.geometry.unit_m;
@@ -405,7 +273,7 @@ class TerrainTopics {
                                     {"color", color_of({})},
                                     {"colors", std::move(colors)},
                                     {"indices", std::move(corners)}});
-    return screed::scene_of(Json::array({std::move(terrain)}));
+    return scene_of(Json::array({std::move(terrain)}));
   }
 
   /// A picture needs no more than a hundredth of a millimetre, and the file less room.
@@ -466,8 +334,8 @@ void export_mcap(std::span<const SessionReader> sessions, const std::filesystem:
     robots.emplace_back(file, schemas, session, robots.size());
   }
   const auto poses =
-      add_json_channel(file, "/tf", "foxglove.FrameTransforms", foxglove::transforms());
-  const auto events = add_json_channel(file, "/events", "foxglove.Log", foxglove::log());
+      add_json_channel(file, "/tf", "foxglove.FrameTransforms", foxglove::transforms_schema());
+  const auto events = add_json_channel(file, "/events", "foxglove.Log", foxglove::log_schema());
   const auto curve = file.add_channel("/leveling", "ros1", schemas.leveling);
   TerrainTopics terrain(file, first);
 
@@ -478,7 +346,7 @@ void export_mcap(std::span<const SessionReader> sessions, const std::filesystem:
       bodies.push_back(body_of(*options.robot, tracks, i, robots[i].name()));
     }
     const auto channel =
-        add_json_channel(file, "/robots", "foxglove.SceneUpdate", foxglove::scene());
+        add_json_channel(file, "/robots", "foxglove.SceneUpdate", foxglove::scene_schema());
     file.add_message(channel, range.first * tick_ns, scene_of(std::move(bodies)).dump());
   }
   if (const auto before = first.terrain_before(); before.has_value() && range.first == 0) {

@@ -1,14 +1,11 @@
 // `screed replay RUN`: does this build still compute what was recorded? Exit codes: 0 the outputs
 // are identical, 1 they differ, 2 wrong RUN. With --set: what would the robot have answered with
-// other parameters? Exit codes: 0, 2 wrong RUN or key. `screed parity FILE`: does the image compute
-// what the host computes? Exit codes: 0 no byte differs, 1 one does, 2 wrong input.
+// other parameters? Exit codes: 0, 2 wrong RUN or key.
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,20 +20,13 @@
 #include "host_sim/render/chart/stacked_chart.h"
 #include "host_sim/render/chart/svg.h"
 #include "host_sim/render/picture/color_map.h"
-#include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_layout.h"
 #include "host_sim/run/session/session_reader.h"
 #include "host_sim/run/simulation/outcome.h"
-#include "host_sim/run/simulation/parity.h"
-#include "host_sim/run/simulation/simulation.h"
-#include "host_sim/run/world/image_robot.h"
-#include "host_sim/run/world/world_setup.h"
 #include "tools/screed/cli/command.h"
-#include "tools/screed/cli/interrupt.h"
-#include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
 
 namespace screed {
@@ -326,75 +316,6 @@ int replay_run(const ReplayArguments& arguments) {
   return identical ? 0 : 1;
 }
 
-// ---- parity ----
-
-struct ParityArguments {
-  std::string file;
-  std::string board = kDefaultBoard;
-  std::optional<std::string> elf;
-  double minutes = 1.0;
-  std::vector<std::string> sets;
-  bool quiet = false;
-  bool json = false;
-};
-
-Json json_of(const ParityArguments& arguments, const ParityResult& result, double factor) {
-  const bool differs = result.first_difference_tick.has_value();
-  return {{"experiment", arguments.file},
-          {"board", arguments.board},
-          {"ticks", result.ticks},
-          {"driving_ticks", result.driving_ticks},
-          {"compared_bytes", result.compared_bytes},
-          {"differing_bytes", result.differing_bytes},
-          {"first_difference_tick", differs ? Json(*result.first_difference_tick) : Json()},
-          {"first_difference", differs ? Json(result.first_difference) : Json()},
-          {"simulated_s", result.simulated_s},
-          {"real_time_factor", factor}};
-}
-
-void print_parity(const Json& json) {
-  print(
-      "{experiment} on {board}: {ticks} ticks ({driving_ticks} driving), "
-      "{compared_bytes} bytes compared, {differing_bytes} differ\n",
-      json);
-  if (!json["first_difference"].is_null())
-    print("first difference at tick {first_difference_tick}: {first_difference}\n", json);
-  print("{simulated_s:.1f} s simulated, real-time factor {real_time_factor:.1f}\n", json);
-}
-
-int run_parity_command(const ParityArguments& arguments) {
-  const Experiment experiment = read_experiment(arguments.file, arguments.sets);
-  const bool quiet = arguments.quiet || arguments.json;
-  TaskBar setup_bar(quiet);
-  const std::unique_ptr<World> world =
-      make_world(experiment, {.board = arguments.board,
-                              .image = arguments.elf.value_or(default_image(arguments.board)),
-                              .progress = setup_bar.progress()});
-  setup_bar.clear();
-  std::optional<ProgressBar> bar;
-  if (!quiet) bar.emplace(std::cerr);
-  const double seconds = arguments.minutes * 60.0;
-  const auto begin = std::chrono::steady_clock::now();
-  const ParityResult result =
-      run_parity(*world, world->robot().settings(), seconds, [&](const ParityResult& so_far) {
-        if (bar.has_value() && so_far.ticks % kTickRate_hz == 0) {
-          bar->show(so_far.simulated_s, seconds,
-                    std::to_string(so_far.differing_bytes) + " bytes differ");
-        }
-        return !interrupted();
-      });
-  const double wall_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const double factor = wall_s > 0.0 ? result.simulated_s / wall_s : 0.0;
-  if (bar.has_value()) bar->finish();
-  const Json json = json_of(arguments, result, factor);
-  arguments.json ? print_json(json) : print_parity(json);
-  if (interrupted()) {
-    std::cerr << "note: stopped after " << result.simulated_s << " s of " << seconds << " s\n";
-  }
-  return result.differing_bytes == 0 ? interrupted_exit_code() : 1;
-}
-
 }  // namespace
 
 void register_replay_command(Command& root, Program& program) {
@@ -413,27 +334,6 @@ void register_replay_command(Command& root, Program& program) {
       .add_option("--picture", arguments.picture,
                   "Draw duty and states as recorded and with --set: .svg or .png")
       ->type_name("FILE");
-  command.add_flag("--json", arguments.json, "Print the result as JSON");
-}
-
-void register_parity_command(Command& root, Program& program) {
-  auto [command, arguments] = add_subcommand<ParityArguments>(
-      root, program, "parity",
-      "Run the flash image in a simulated world and compare every output byte "
-      "with the firmware compiled for this machine. Of several robots the first is the "
-      "image",
-      run_parity_command);
-  command.add_option("FILE", arguments.file, "Experiment file (INI)")->required();
-  command.add_option("--board", arguments.board,
-                     std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");
-  command.add_option("--elf", arguments.elf, "ELF image (default: the one of make firmware)")
-      ->type_name("FILE");
-  add_number(command, "--minutes", arguments.minutes, "Simulated time [min] (default: 1)",
-             {0.01, 10000.0});
-  command.add_option("--set", arguments.sets, "Override a key: section.key=value")
-      ->type_name("KEY=VALUE")
-      ->one_value_each();
-  command.add_flag("--quiet", arguments.quiet, "Show no progress");
   command.add_flag("--json", arguments.json, "Print the result as JSON");
 }
 
