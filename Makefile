@@ -72,5 +72,6 @@ include tests/asan.mk
 include tools/mutants/mutants.mk
 include nn/training/training.mk
 include tools/lint/lint.mk
--include $(shell find $(BUILD_ROOT) -name sysroot -prune -o -name '*.d' -print 2> /dev/null)
+# Not those of other trees below it.
+-include $(shell find $(BUILD_ROOT) \( -name sysroot -o -name package \) -prune -o -name '*.d' -print 2> /dev/null)
 endif

@@ -22,7 +22,9 @@ rm -f "$fresh"/packages/*dbgsym*
 cp -r "$here/tools/package/debian/tests" "$fresh/tests"
 mount -t proc proc "$fresh/proc"
 inside() { chroot "$fresh" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
-files() { (cd "$fresh" && find . -xdev -not -path './proc/*' -not -path './var/*' -not -path './tmp/*' | LC_ALL=C sort); }
+files() {
+  (cd "$fresh" && find . -xdev -not -path './proc/*' -not -path './var/*' -not -path './tmp/*' | LC_ALL=C sort)
+}
 
 inside apt-get update -qq > /dev/null 2>&1
 # What they depend on first: what is there before the packages is there after them.

@@ -147,7 +147,8 @@ export const mcapTests = (screed, folder) => {
     },
     async 'MCAP: heights are those of the PNG series, the drawn terrain lies on them, the curve is the CSV'() {
       const { topics } = await exported('soil', '--every', '500');
-      screed('session', 'export', 'soil', '--heights', '--all', '--first', '499', '--every', '500', '--out', 'soil_png');
+      screed('session', 'export', 'soil', '--heights', '--all', '--first', '499', '--every', '500',
+        '--out', 'soil_png');
       const scale = JSON.parse(readFileSync(join(folder, 'soil_png', 'heights', 'scale.json'), 'utf8'));
       const grids = topics.get('/heights').messages.map(json);
       assert.equal(grids.length, 9);

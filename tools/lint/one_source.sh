@@ -35,6 +35,17 @@ CLI tools/command_line/program.cpp
 nlohmann host_sim/core/json_text.cpp
 END
 
+# Debian packages are built with what the list names before its tests, less what runs on no build machine.
+NOT_BUILT_WITH='g\+\+|pkg-config|python3|povray|avrdude|tio|zip|unzip|fonts-.*'
+NOT_IN_THE_LIST='debhelper-compat.*|dh-python|help2man|python3|libsimavr-dev'
+listed=$(sed '/^# tests/q; /^#/d' tools/debian-packages.txt | grep -vxE "$NOT_BUILT_WITH|#.*" | LC_ALL=C sort)
+build_depends=$(sed -n '/^Build-Depends:/,/^Standards-Version:/p' tools/package/debian/control |
+  sed 's/^Build-Depends://; /^Standards-Version:/d; s/[ ,]//g' | grep -vxE "$NOT_IN_THE_LIST" | LC_ALL=C sort)
+if ! diff <(echo "$listed") <(echo "$build_depends"); then
+  echo "tools/package/debian/control: Build-Depends (>) is not what tools/debian-packages.txt (<) names to build with"
+  status=1
+fi
+
 mapfile -t sources < <(find firmware hal host_sim nn tools Makefile tests/*.mk tests/*/*.mk \
   \( -name '*.cpp' -o -name '*.h' -o -name '*.mk' -o -name Makefile \) ! -path "$SOIL.*" \
   ! -path tools/build/options.mk | LC_ALL=C sort)

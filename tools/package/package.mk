@@ -11,7 +11,7 @@ export DEBFULLNAME ?= The Screed contributors
 export DEBEMAIL ?= screed@example.org
 
 .PHONY: dist packages test-packages
-dist: $(PACKAGE_WORK)/$(RELEASE).tar.gz  ## build/package/screed-NUMBER.tar.gz: the committed sources and the page of reports
+dist: $(PACKAGE_WORK)/$(RELEASE).tar.gz  ## build/package/screed-NUMBER.tar.gz: committed sources, page of reports
 $(PACKAGE_WORK)/$(RELEASE).tar.gz: $(REPORT_PAGE) FORCE
 	@rm -rf $(PACKAGE_WORK)/$(RELEASE) ; mkdir -p $(PACKAGE_WORK)
 	@git archive --prefix=$(RELEASE)/ HEAD | tar -x -C $(PACKAGE_WORK)
