@@ -22,7 +22,8 @@ PACKAGE_LISTS := tools/debian-packages.txt \
   $(call packages_for,test-python test-tutorial,tests/python) $(call packages_for,test-report,tests/report) \
   $(call packages_for,test-interface,tests/interface) $(call packages_for,packages test-packages,tools/package) \
   $(call packages_for,camera test-camera,tools/camera) $(call packages_for,pictures,tools/pictures) \
-  $(if $(shell command -v npm),,$(call packages_for,build report-page install test-install test-report,tools/report))
+  $(if $(shell command -v npm)$(wildcard tools/report/built_page.html),,$(call \
+    packages_for,build report-page install dist packages test-packages test-install test-report,tools/report))
 BUILD_FILES := Makefile $(sort $(wildcard $(addsuffix /*.mk,\
   tools/build host_sim/* hal/avr nn/* tests tests/* tools/* tools/*/*)))
 

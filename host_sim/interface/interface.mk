@@ -4,8 +4,9 @@
 
 # Changes when programs that were linked before would no longer run.
 INTERFACE_ABI := 0
-# Where libraries lie below PREFIX, and the way back from their pkg-config files.
-LIBDIR ?= lib
+# Where libraries lie below PREFIX (lib/x86_64-linux-gnu), and the way back from their pkg-config files.
+LIBDIR = lib
+$(if $(filter /%,$(LIBDIR)),$(error LIBDIR=$(LIBDIR): is a folder below PREFIX))
 PC_UP := $(subst $(empty) ,/,$(patsubst %,..,$(subst /, ,$(LIBDIR)/pkgconfig)))
 INTERFACE_HEADERS := $(wildcard host_sim/interface/screed/*.h)
 # NAME.symbols: the functions of libNAME, one a line, so that what leaves or joins shows.

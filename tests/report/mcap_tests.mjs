@@ -1,4 +1,4 @@
-// `screed session export --mcap` and `screed decode --mcap`, read by the libraries of MCAP's and ROS' authors, against
+// `screed session export --mcap` and `screed decode --mcap`, read by Foxglove's libraries, against
 // the CSV, the session's own bytes and the published schemas. `screed` runs the program in `folder`, which has the runs
 // "soil", "rigid" and "several" of report_test.mjs.
 import { parse as parseRos } from '@foxglove/rosmsg';
@@ -167,6 +167,7 @@ export const mcapTests = (screed, folder) => {
           assert.ok(Math.abs(height - recorded) <= scale.m_per_sample_step, `node ${node} of ${file}`);
         });
         assert.ok(Math.abs(grid.pose.position.x + 0.5 * grid.cell_size.x - scale.west_m) < 1e-12);
+        assert.ok(Math.abs(grid.pose.position.y + 0.5 * grid.cell_size.y - scale.south_m) < 1e-12);
       });
 
       const scenes = topics.get('/terrain').messages.map(json);
@@ -215,6 +216,12 @@ export const mcapTests = (screed, folder) => {
       const messages = topics.get('/robot_0/frames').messages;
       assert.equal(messages.length, 200);
       assert.equal(messages[0].logTime, 3010000000n);
+      // What was so before is no event; ground is there from the first moment on.
+      for (const event of topics.get('/events').messages) assert.ok(event.logTime > 3010000000n);
+      assert.deepEqual(topics.get('/heights').messages.map((it) => it.logTime), [3000000000n, 5000000000n]);
+      const part = await exported('soil', '--first', '1234', '--count', '100', '--every', '50');
+      assert.deepEqual(part.topics.get('/terrain').messages.map((it) => it.logTime),
+        [12340000000n, 12500000000n, 13000000000n, 13340000000n]);
     },
     async 'MCAP of a radio log is its CSV'() {
       screed('decode', join('several', 'telemetry.log'), '--mcap', '--out', 'radio.mcap');

@@ -117,7 +117,7 @@ void PageEvents::add(const SimFrame& frame) {
   if (frame.faults == faults_) return;
   const auto appeared = static_cast<std::uint16_t>(frame.faults & ~faults_);
   const auto cleared = static_cast<std::uint16_t>(faults_ & ~frame.faults);
-  if (appeared != 0) events_.push_back({frame.time, "fault: " + fault_names(appeared)});
+  if (appeared != 0) events_.push_back({frame.time, "fault: " + fault_names(appeared), true});
   if (cleared != 0) events_.push_back({frame.time, "fault cleared: " + fault_names(cleared)});
   faults_ = frame.faults;
 }

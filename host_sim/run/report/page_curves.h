@@ -84,6 +84,7 @@ class PageEvents {
   struct Event {
     double time_s;
     std::string text;
+    bool fault = false;  ///< one appeared
   };
 
   void add(const SimFrame& frame);

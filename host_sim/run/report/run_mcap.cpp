@@ -162,10 +162,19 @@ class RobotTopics {
     events_.add(frame_rows_[i]);
   }
 
+  /// Takes up the events where the row before this one left them.
+  void begin_events_at(std::uint64_t first) {
+    if (first == 0 || first > session_.frames()) return;
+    std::array<SimFrame, 1> before{};
+    session_.read(first - 1, std::span(before));
+    events_.add(before[0]);
+    told_ = events_.events().size();
+  }
+
   /// The events that have come since the last call.
   template <class Use>
   void for_each_new_event(Use use) {
-    for (; told_ < events_.events().size(); ++told_) use(events_.events()[told_].text);
+    for (; told_ < events_.events().size(); ++told_) use(events_.events()[told_]);
   }
 
  private:
@@ -206,21 +215,42 @@ bool has_pose(const SimFrame& frame) {
 
 class TerrainTopics {
  public:
-  TerrainTopics(McapFile& file, const SessionReader& session) : file_(file), session_(session) {
-    if (const auto before = session.terrain_before(); before.has_value()) {
-      const auto [low, high] = std::ranges::minmax(before->heights);
-      extremes_ = session.has_heights() ? session.height_extremes() : HeightExtremes{low, high};
+  TerrainTopics(McapFile& file, McapFile::Id scene, const SessionReader& session)
+      : file_(file),
+        session_(session),
+        before_(session.terrain_before()),
+        after_(session.terrain_after()) {
+    if (session.has_heights()) {
+      extremes_ = session.height_extremes();
+    } else if (before_.has_value()) {
+      std::vector<std::int32_t> heights = before_->heights;
+      if (after_.has_value()) {
+        heights.insert(heights.end(), after_->heights.begin(), after_->heights.end());
+      }
+      const auto [low, high] = std::ranges::minmax(heights);
+      extremes_ = {low, high};
     }
-    scene_ = add_json_channel(file, "/terrain", "foxglove.SceneUpdate", foxglove::scene_schema());
+    scene_ = file.add_channel("/terrain", "json", scene);
     grid_ = add_json_channel(file, "/heights", "foxglove.Grid", foxglove::grid_schema());
   }
 
+  /// The ground after so many ticks, as far as the session knows: without recorded heights it is
+  /// that before the run up to the last tick.
+  void write(std::uint64_t tick, std::uint64_t time_ns) {
+    if (session_.has_heights()) {
+      write(session_.heights_after(tick), time_ns);
+    } else if (const auto& known = tick == session_.frames() ? after_ : before_;
+               known.has_value()) {
+      write(*known, time_ns);
+    }
+  }
+
+ private:
   void write(const HeightMap& map, std::uint64_t time_ns) {
     file_.add_message(grid_, time_ns, grid_of(map.geometry, map.heights, time_ns).dump());
     file_.add_message(scene_, time_ns, drawn(map, time_ns).dump());
   }
 
- private:
   static Json grid_of(const HeightMapGeometry& g, std::span<const std::int32_t> units,
                       std::uint64_t time_ns) {
     constexpr int kFloat32 = 7;
@@ -282,6 +312,8 @@ class TerrainTopics {
 
   McapFile& file_;
   const SessionReader& session_;
+  std::optional<HeightMap> before_;
+  std::optional<HeightMap> after_;
   HeightExtremes extremes_{};
   McapFile::Id scene_ = 0;
   McapFile::Id grid_ = 0;
@@ -303,8 +335,10 @@ std::string experiment_without_key(const SessionInfo& info) {
 void add_identity(McapFile& file, std::span<const SessionReader> sessions,
                   const std::string& summary) {
   const SessionInfo& info = sessions.front().info();
+  const std::vector<std::string>& missing = sessions.front().missing_parameters();
   std::map<std::string, std::string> parameters;
   for (const ParameterInfo& it : kParameterTable) {
+    if (std::ranges::find(missing, it.name) != missing.end()) continue;
     parameters[it.name] = std::to_string(info.parameters.values[it.number]);
   }
   file.add_metadata("run", {{"experiment", info.experiment_name},
@@ -337,7 +371,9 @@ void export_mcap(std::span<const SessionReader> sessions, const std::filesystem:
       add_json_channel(file, "/tf", "foxglove.FrameTransforms", foxglove::transforms_schema());
   const auto events = add_json_channel(file, "/events", "foxglove.Log", foxglove::log_schema());
   const auto curve = file.add_channel("/leveling", "ros1", schemas.leveling);
-  TerrainTopics terrain(file, first);
+  const auto scene =
+      file.add_schema("foxglove.SceneUpdate", "jsonschema", foxglove::scene_schema().dump());
+  TerrainTopics terrain(file, scene, first);
 
   if (options.robot.has_value()) {
     const bool tracks = setup_of(first.info(), {}).experiment.vehicle.tracks;
@@ -345,13 +381,11 @@ void export_mcap(std::span<const SessionReader> sessions, const std::filesystem:
     for (std::size_t i = 0; i < robots.size(); ++i) {
       bodies.push_back(body_of(*options.robot, tracks, i, robots[i].name()));
     }
-    const auto channel =
-        add_json_channel(file, "/robots", "foxglove.SceneUpdate", foxglove::scene_schema());
+    const auto channel = file.add_channel("/robots", "json", scene);
     file.add_message(channel, range.first * tick_ns, scene_of(std::move(bodies)).dump());
   }
-  if (const auto before = first.terrain_before(); before.has_value() && range.first == 0) {
-    terrain.write(*before, 0);
-  }
+  terrain.write(range.first, range.first * tick_ns);
+  for (RobotTopics& robot : robots) robot.begin_events_at(range.first);
 
   const std::vector<LevelingPoint> points = first.leveling();
   auto point = points.begin();
@@ -378,14 +412,13 @@ void export_mcap(std::span<const SessionReader> sessions, const std::filesystem:
         if (frame == nullptr) continue;
         robot.write(i, time_ns);
         if (has_pose(*frame)) transforms.push_back(transform_of(robot, *frame, time_ns));
-        robot.for_each_new_event([&](const std::string& text) {
+        robot.for_each_new_event([&](const PageEvents::Event& event) {
           constexpr int kInfo = 2;
           constexpr int kWarning = 3;
-          const bool fault = text.starts_with("fault: ");
           file.add_message(events, time_ns,
                            Json{{"timestamp", timestamp(time_ns)},
-                                {"level", fault ? kWarning : kInfo},
-                                {"message", text},
+                                {"level", event.fault ? kWarning : kInfo},
+                                {"message", event.text},
                                 {"name", robot.name()},
                                 {"file", ""},
                                 {"line", 0}}
@@ -396,14 +429,10 @@ void export_mcap(std::span<const SessionReader> sessions, const std::filesystem:
         file.add_message(poses, time_ns, Json{{"transforms", std::move(transforms)}}.dump());
       }
       write_curve(range.first * tick_ns, time_ns);
-      if (first.has_heights() && (tick % options.terrain_every == 0 || tick == end)) {
-        terrain.write(first.heights_after(tick), time_ns);
+      if (tick == end || (first.has_heights() && tick % options.terrain_every == 0)) {
+        terrain.write(tick, time_ns);
       }
     }
-  }
-  if (const auto after = first.terrain_after();
-      after.has_value() && !first.has_heights() && end == first.frames()) {
-    terrain.write(*after, end * tick_ns);
   }
   file.finish();
 }

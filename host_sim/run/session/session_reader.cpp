@@ -105,6 +105,9 @@ SessionInfo read_info(hid_t file, std::vector<std::string>& missing_parameters) 
   info.seed = h5::read_uint64(file, layout::kSeedAttribute);
   info.tick_rate_hz = narrow<std::uint32_t>(h5::read_int64(file, layout::kTickRateAttribute),
                                             layout::kTickRateAttribute);
+  if (info.tick_rate_hz == 0) {
+    throw Hdf5Failure(std::string("attribute '") + layout::kTickRateAttribute + "' is 0");
+  }
   info.board_name = h5::read_string(file, layout::kBoardNameAttribute);
 
   const h5::Handle parameters(H5Gopen2(file, layout::kParametersGroup, H5P_DEFAULT), H5Gclose,

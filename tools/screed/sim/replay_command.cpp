@@ -8,6 +8,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -107,6 +108,9 @@ Parameters changed_parameters(const SessionInfo& info, const std::vector<std::st
     }
     apply_override(experiment, text);
     if (algorithm) {
+      if (experiment.experiment.algorithm == kTrainingDriveName) {
+        throw InputError("--set " + text + ": its legs follow from a run's duration; sim runs it");
+      }
       experiment.parameters.algorithm() = algorithm_number(experiment.experiment.algorithm);
     }
   }
@@ -116,6 +120,11 @@ Parameters changed_parameters(const SessionInfo& info, const std::vector<std::st
   return experiment.parameters;
 }
 
+/// As the column "time" of frames.
+double time_after(std::uint64_t tick) {
+  return static_cast<double>(tick + 1) / kTickRate_hz;
+}
+
 /// Recorded and replayed outputs side by side.
 class OutputChanges {
  public:
@@ -123,11 +132,12 @@ class OutputChanges {
     const Column* column;
     std::uint64_t ticks = 0;
     std::uint64_t first = 0;
-    int largest = 0;  ///< of a number; 0 for bytes of the radio
+    std::optional<int> largest;  ///< difference, of a duty
   };
 
   OutputChanges() {
-    for (const Column& column : kOutputColumns) changes_.push_back({&column});
+    for (const Column& column : kOutputColumns) changes_.push_back({&column, 0, 0, {}});
+    of("duty_left").largest = of("duty_right").largest = 0;
   }
 
   void add(std::uint64_t tick, const RobotOutput& recorded, const RobotOutput& replayed,
@@ -146,8 +156,8 @@ class OutputChanges {
       if (it.ticks == 0) it.first = tick;
       ++it.ticks;
     }
-    note(changes_[0], replayed.duty_left - recorded.duty_left);
-    note(changes_[1], replayed.duty_right - recorded.duty_right);
+    note(of("duty_left"), replayed.duty_left - recorded.duty_left);
+    note(of("duty_right"), replayed.duty_right - recorded.duty_right);
     const double time_s = time_after(tick);
     const auto percent = [](int duty) { return 100.0 * duty / kDutyMax; };
     // Ten a second are enough to see where the two part.
@@ -194,12 +204,12 @@ class OutputChanges {
   }
 
  private:
-  static double time_after(std::uint64_t tick) {
-    return static_cast<double>(tick + 1) / kTickRate_hz;
+  Change& of(std::string_view name) {
+    return *std::ranges::find(changes_, name, [](const Change& it) { return it.column->name; });
   }
 
   static void note(Change& change, int difference) {
-    change.largest = std::max(change.largest, std::abs(difference));
+    change.largest = std::max(*change.largest, std::abs(difference));
   }
 
   /// What the algorithm does while it runs, otherwise why it does not.
@@ -226,7 +236,7 @@ Json json_of(const std::vector<OutputChanges::Change>& changes) {
     list.push_back({{"column", it.column->name},
                     {"ticks", it.ticks},
                     {"first_tick", it.first},
-                    {"largest", it.column->array ? Json() : Json(it.largest)}});
+                    {"largest", it.largest.has_value() ? Json(*it.largest) : Json()}});
   }
   return list;
 }
@@ -235,11 +245,10 @@ void print_changes(const ReplayResult& result, const std::vector<OutputChanges::
   if (changes.empty()) return;
   print("  {:-18s} {:12s} {:12s} {:12s}\n", "output", "ticks", "first at", "differs by");
   for (const OutputChanges::Change& it : changes) {
-    const double first_s = static_cast<double>(it.first) / kTickRate_hz;
     const double share = static_cast<double>(it.ticks) / static_cast<double>(result.ticks);
     print("  {:-18s} {:12s} {:12s} {:12s}\n", it.column->name, filled("{*100:.1f} %", share),
-          filled("{:.2f} s", first_s),
-          it.largest == 0 ? std::string() : "up to " + std::to_string(it.largest));
+          filled("{:.2f} s", time_after(it.first)),
+          it.largest.has_value() ? "up to " + std::to_string(*it.largest) : std::string());
   }
 }
 
@@ -252,68 +261,61 @@ std::string picture_path(const std::string& path, std::size_t robot, std::size_t
       .string();
 }
 
-int replay_what_if(const ReplayArguments& arguments) {
-  if (arguments.picture.has_value()) check_picture_name("--picture", *arguments.picture);
+/// Draws what changed and says where.
+void draw(const ReplayArguments& arguments, const SessionReader& session,
+          const OutputChanges& outputs, const std::string& path, const std::string& of) {
+  std::string changed;
+  for (const std::string& set : arguments.sets) changed += (changed.empty() ? "" : ", ") + set;
+  write_picture(
+      path, outputs.picture(session, session.info().experiment_name + ": " + of + changed,
+                            "open loop: what the robot would have answered to what it sensed on "
+                            "the recorded drive"));
+  if (!arguments.json) print("  picture            {}\n", path);
+}
+
+int replay_run(const ReplayArguments& arguments) {
+  const bool what_if = !arguments.sets.empty();
+  if (arguments.picture.has_value()) {
+    if (!what_if) throw UsageError("--picture needs --set");
+    check_picture_name("--picture", *arguments.picture);
+  }
   const std::vector<std::filesystem::path> files = session_files(arguments.run);
   std::vector<Json> robots;
+  bool identical = true;
   TaskBar bar(arguments.json);
   for (std::size_t i = 0; i < files.size(); ++i) {
     const SessionReader session(files[i]);
     OutputChanges outputs;
     ReplayOptions options;
-    options.parameters = changed_parameters(session.info(), arguments.sets);
-    options.on_tick = [&](const auto&... of_tick) { outputs.add(of_tick...); };
     options.progress = bar.progress();
-    const ReplayResult result = replay_session(files[i], options);
-    bar.clear();
-    const std::string of = files.size() > 1 ? "robot " + std::to_string(i) + ": " : "";
-    print_notes(of, result);
-    if (arguments.picture.has_value()) {
-      std::string changed;
-      for (const std::string& set : arguments.sets) changed += (changed.empty() ? "" : ", ") + set;
-      write_picture(picture_path(*arguments.picture, i, files.size()),
-                    outputs.picture(session, session.info().experiment_name + ": " + of + changed,
-                                    "open loop: what the robot would have answered to what it "
-                                    "sensed on the recorded drive"));
+    if (what_if) {
+      options.parameters = changed_parameters(session.info(), arguments.sets);
+      options.on_tick = [&](const auto&... of_tick) { outputs.add(of_tick...); };
     }
-    Json json = json_of(run_of_robot(arguments.run, i), result);
-    json["open_loop"] = true;
-    json["changes"] = json_of(outputs.changes());
-    robots.push_back(std::move(json));
-    if (arguments.json) continue;
-    print_text(of, result);
-    print_changes(result, outputs.changes());
-  }
-  if (arguments.json) {
-    print_robots(robots);
-  } else {
-    print(
-        "open loop: the robot sensed what it did on the recorded drive; it does not go where "
-        "these outputs would take it\n");
-  }
-  return 0;
-}
-
-int replay_run(const ReplayArguments& arguments) {
-  if (!arguments.sets.empty()) return replay_what_if(arguments);
-  if (arguments.picture.has_value()) throw UsageError("--picture needs --set");
-  const std::vector<std::filesystem::path> files = session_files(arguments.run);
-  std::vector<Json> robots;
-  bool identical = true;
-  TaskBar bar(arguments.json);
-  for (size_t i = 0; i < files.size(); ++i) {
-    ReplayOptions options;
-    options.progress = bar.progress();
     const ReplayResult result = replay_session(files[i], options);
     identical = identical && !result.first_difference_tick;
     bar.clear();
     const std::string of = files.size() > 1 ? "robot " + std::to_string(i) + ": " : "";
     print_notes(of, result);
-    robots.push_back(json_of(run_of_robot(arguments.run, i), result));
+    Json& json = robots.emplace_back(json_of(run_of_robot(arguments.run, i), result));
     if (!arguments.json) print_text(of, result);
+    if (!what_if) continue;
+    json["open_loop"] = true;
+    json["changes"] = json_of(outputs.changes());
+    if (!arguments.json) print_changes(result, outputs.changes());
+    if (!arguments.picture.has_value()) continue;
+    const std::string path = picture_path(*arguments.picture, i, files.size());
+    json["picture"] = path;
+    draw(arguments, session, outputs, path, of);
   }
-  if (arguments.json) print_robots(robots);
-  return identical ? 0 : 1;
+  if (arguments.json) {
+    print_robots(robots);
+  } else if (what_if) {
+    print(
+        "open loop: the robot sensed what it did on the recorded drive; it does not go where these "
+        "outputs would take it\n");
+  }
+  return identical || what_if ? 0 : 1;
 }
 
 }  // namespace
@@ -331,8 +333,10 @@ void register_replay_command(Command& root, Program& program) {
       ->type_name("KEY=VALUE")
       ->one_value_each();
   command
-      .add_option("--picture", arguments.picture,
-                  "Draw duty and states as recorded and with --set: .svg or .png")
+      .add_option(
+          "--picture", arguments.picture,
+          "Draw duty and states as recorded and with --set: .svg or .png; of several robots "
+          "one for each, NAME_robot_0 and so on")
       ->type_name("FILE");
   command.add_flag("--json", arguments.json, "Print the result as JSON");
 }

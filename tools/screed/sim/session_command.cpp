@@ -202,6 +202,10 @@ void export_run_mcap(const ExportArguments& arguments, const fs::path& file, con
   RunMcapOptions options;
   options.range = chosen_range(arguments, sessions.front(), true);
   if (arguments.every.has_value()) options.terrain_every = *arguments.every;
+  if (!sessions.front().has_heights()) {
+    std::cerr << "note: the ground of start and end alone: the run has no recorded heights; sim "
+                 "--heights and record keep them\n";
+  }
   options.robot = robot_of_run(sessions.front(), file);
   std::ifstream summary(fs::absolute(file).parent_path() / "summary.json");
   options.summary.assign(std::istreambuf_iterator<char>(summary), {});  // empty where there is none
@@ -344,9 +348,10 @@ void register_session_command(Command& root, Program& program) {
                    "Export height maps as 16-bit PNGs, with their scale in scale.json");
   command.add_flag("--leveling", exported.leveling,
                    "Export the leveling curve as CSV, with units in the header");
-  command.add_flag("--mcap", exported.mcap,
-                   "Export the whole run, all robots, as an MCAP file for Foxglove, Lichtblick and "
-                   "PlotJuggler");
+  command.add_flag(
+      "--mcap", exported.mcap,
+      "Export all robots, and the whole run where no frames are named, as an MCAP file "
+      "for Foxglove, Lichtblick and PlotJuggler");
   command.add_flag("--pictures", exported.pictures,
                    "Export shaded height maps with the driven path: of the start, the end and what "
                    "changed, and of frames between where heights were recorded");

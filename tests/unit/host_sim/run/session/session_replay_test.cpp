@@ -200,12 +200,25 @@ TEST_F(SessionTest, WhatIfComparesTheOutputsOfOtherParameters) {
   EXPECT_EQ(json["changes"][0]["column"], "radio_out");
   EXPECT_EQ(json["changes"][0]["first_tick"], json["first_difference_tick"]);
   EXPECT_GT(json["changes"][0]["ticks"].get<int>(), 10);
+  EXPECT_TRUE(json["changes"][0]["largest"].is_null());
+}
+
+TEST_F(SessionTest, WhatIfTakesAnotherAlgorithm) {
+  write_run(file_, robot_run(300));
+  const CommandResult result =
+      replay_command({file_.string(), "--set", "experiment.algorithm=random_walk"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.out.find("open loop"), std::string::npos);
+  EXPECT_EQ(replay_command({file_.string(), "--set", "experiment.algorithm=random_walk",
+                            "--picture", (base_ / "a.jpg").string()})
+                .status,
+            2);
 }
 
 TEST_F(SessionTest, WhatIfRefusesWhatARecordedDriveCannotChange) {
   write_run(file_, robot_run(3));
   for (const char* set : {"map.size=3", "parameters.gyro_offset_x=40000", "parameters.no_such=1",
-                          "experiment.algorithm=nothing"}) {
+                          "experiment.algorithm=nothing", "experiment.algorithm=training_drive"}) {
     EXPECT_EQ(replay_command({file_.string(), "--set", set}).status, 2) << set;
   }
   EXPECT_EQ(replay_command({file_.string(), "--set", "parameters.walk_speed_min=200", "--set",
