@@ -25,6 +25,17 @@ std::string exported(const fs::path& session, const fs::path& mcap,
   return read_text(mcap);
 }
 
+/// On ground in the program's units.
+Recording run_of(std::size_t ticks) {
+  Recording run = random_run(ticks);
+  for (HeightMap* map : {&run.before, &run.after}) {
+    map->geometry.unit_m = kHeightUnit_m;
+    map->heights[3] = 4000;
+    map->heights[4] = -4000;
+  }
+  return run;
+}
+
 /// The first chunk's records.
 std::string first_chunk(const std::string& file) {
   std::size_t at = 8;
@@ -43,7 +54,7 @@ std::string first_chunk(const std::string& file) {
 }
 
 TEST_F(SessionTest, McapHoldsRowsOfAnyBitsAndNoPoseThatIsNone) {
-  const Recording run = random_run(300);
+  const Recording run = run_of(300);
   write_run(file_, run);
   const std::string file = exported(file_, base_ / "run.mcap");
   EXPECT_EQ(file.substr(0, 8), kMagic);
@@ -61,7 +72,7 @@ TEST_F(SessionTest, McapHoldsRowsOfAnyBitsAndNoPoseThatIsNone) {
 }
 
 TEST_F(SessionTest, McapOfARunThatWasKilledSaysSo) {
-  const Recording run = random_run(2000);
+  const Recording run = run_of(2000);
   {
     SessionWriter writer(file_, run.info);
     writer.write_terrain_before(run.before.view());
@@ -74,7 +85,7 @@ TEST_F(SessionTest, McapOfARunThatWasKilledSaysSo) {
 }
 
 TEST_F(SessionTest, McapThatCannotBeWrittenLeavesNothing) {
-  write_run(file_, random_run(300));
+  write_run(file_, run_of(300));
   EXPECT_THROW(exported(file_, base_ / "missing" / "run.mcap"), RunError);
   {
     const FileSizeLimit limit(10000);
