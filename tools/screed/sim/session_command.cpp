@@ -149,13 +149,15 @@ FrameRange chosen_range(const ExportArguments& arguments, const SessionReader& s
   return range;
 }
 
-/// The robot of a recorded run; none, and a note, when its model is gone by now.
-std::optional<Assembly> robot_of_run(const SessionReader& session, const fs::path& file) {
+/// The robot of a recorded run; none, and a note about what lacks it ("the pictures are"), when its
+/// model is gone by now.
+std::optional<Assembly> robot_of_run(const SessionReader& session, const fs::path& file,
+                                     const char* what_is) {
   const RunSetup setup = setup_of(session.info(), fs::absolute(file).parent_path());
   try {
     return robot_model(setup, session.info().board_name);
   } catch (const InputError& error) {
-    std::cerr << "note: what is exported is without the robot: " << error.what() << "\n";
+    std::cerr << "note: " << what_is << " without the robot: " << error.what() << "\n";
     return std::nullopt;
   }
 }
@@ -173,7 +175,7 @@ void export_all_pictures(const ExportArguments& arguments, std::span<const Sessi
   PictureSeries series;
   series.state_names = leveling_state_names();
   const RunSetup setup = setup_of(session.info(), {});
-  if (const auto robot = robot_of_run(session, paths.file); robot.has_value()) {
+  if (const auto robot = robot_of_run(session, paths.file, "the pictures are"); robot.has_value()) {
     series.shape = shape_of(*robot, setup.experiment.vehicle.tracks);
   }
   std::size_t count = export_run_pictures(paths.folder, sessions, series.shape).size();
@@ -206,7 +208,7 @@ void export_run_mcap(const ExportArguments& arguments, const fs::path& file, con
     std::cerr << "note: the ground of start and end alone: the run has no recorded heights; sim "
                  "--heights and record keep them\n";
   }
-  options.robot = robot_of_run(sessions.front(), file);
+  options.robot = robot_of_run(sessions.front(), file, "the MCAP file is");
   std::ifstream summary(fs::absolute(file).parent_path() / "summary.json");
   options.summary.assign(std::istreambuf_iterator<char>(summary), {});  // empty where there is none
   options.progress = bar.progress();
