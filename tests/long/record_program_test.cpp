@@ -235,7 +235,8 @@ TEST_F(RecordProgram, WrongInputIsOneLine) {
   expect_refused(run("terrain generate hills.jpg"), 2, {"hills.jpg", ".png", ".bmp"});
   expect_refused(run("terrain generate a.png --size 5"), 2, {"--size 5", "16 to 4096"});
   ASSERT_EQ(run("record hard.ini --no-pictures --out run").exit_code, 0);
-  expect_refused(run("session export run"), 2, {"--csv, --heights, --leveling, --mcap, --pictures"});
+  expect_refused(run("session export run"), 2,
+                 {"--csv, --heights, --leveling, --mcap, --pictures"});
   expect_refused(run("session export run --csv --first 100000"), 2, {"--first = 100000"});
   expect_refused(run("session export run --csv --count 100000"), 2, {"--count = 100000"});
   ASSERT_EQ(run("sim hard.ini --no-pictures --duration 0.1 --out plain").exit_code, 0);
