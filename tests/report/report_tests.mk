@@ -3,7 +3,7 @@
 REPORT_TEST_WORK := $(BUILD_ROOT)/report/test
 
 .PHONY: test-report
-test-report:  ## pages of recorded runs in a headless browser (needs npm, chromium)
+test-report:  ## pages of runs in a headless browser, MCAP files (needs npm, chromium)
 test-report: $(SCREED) $(REPORT_PAGE) $(REPORT_TEST_WORK)/packages
 	@cp tests/report/*.mjs $(REPORT_TEST_WORK)
 	@runs=$$(mktemp -d) && trap 'rm -rf "$$runs"' EXIT && \

@@ -35,7 +35,8 @@ CLI tools/command_line/program.cpp
 nlohmann host_sim/core/json_text.cpp
 END
 
-# Debian packages are built with what the list names before its tests, less what runs on no build machine.
+# Debian packages are built with what the list names before its tests, less what every build of a
+# package has and what only runs.
 NOT_BUILT_WITH='g\+\+|pkg-config|python3|povray|avrdude|tio|zip|unzip|fonts-.*'
 NOT_IN_THE_LIST='debhelper-compat.*|dh-python|help2man|python3|libsimavr-dev'
 listed=$(sed '/^# tests/q; /^#/d' tools/debian-packages.txt | grep -vxE "$NOT_BUILT_WITH|#.*" | LC_ALL=C sort)

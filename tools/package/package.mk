@@ -30,5 +30,8 @@ packages: dist  ## build/package/*.deb: Debian packages of the committed sources
 	@cd $(PACKAGE_SOURCE) && env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL -u MAKEOVERRIDES -u INSTALLED \
 	  dpkg-buildpackage --build=binary --no-sign > ../build.log 2>&1 || { tail -n 30 ../build.log >&2 ; exit 1 ; }
 	@ls $(PACKAGE_WORK)/*.deb
+# At once, not after the building.
+$(if $(filter test-packages,$(MAKECMDGOALS)),$(if $(filter-out 0,$(shell id -u)),$(error \
+  test-packages: needs root, for a Debian of its own)))
 test-packages: packages $(SCREED)  ## install the packages in a fresh Debian, run them there, purge them (root; minutes)
 	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/package/run.sh $(PACKAGE_WORK)

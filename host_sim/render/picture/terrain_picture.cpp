@@ -51,6 +51,18 @@ RobotShape shape_of(const Assembly& robot, bool tracks) {
   return shape;
 }
 
+RobotBoxes boxes_of(const Assembly& robot, bool tracks) {
+  const RobotShape shape = shape_of(robot, tracks);
+  const AssemblyWheel& wheel = robot.wheels[0][0];
+  const double axle = wheel.centre.z();
+  const double radius = wheel.radius_m;
+  RobotBoxes boxes{{shape.hull, axle - 0.3 * radius, axle + 1.3 * radius}, {}};
+  for (const RobotPlate& gear : shape.running_gear) {
+    boxes.running_gear.push_back({gear, axle - radius, axle + radius});
+  }
+  return boxes;
+}
+
 namespace {
 
 constexpr Color kPaper{1.0, 1.0, 1.0};

@@ -32,6 +32,20 @@ struct RobotShape {
 /// tracks: tracks round the wheels.
 RobotShape shape_of(const Assembly& robot, bool tracks);
 
+/// A plate with its lower and upper face, m in the robot's frame.
+struct RobotBox {
+  RobotPlate plate;
+  double bottom;
+  double top;
+};
+
+/// The same in three dimensions.
+struct RobotBoxes {
+  RobotBox hull;
+  std::vector<RobotBox> running_gear;
+};
+RobotBoxes boxes_of(const Assembly& robot, bool tracks);
+
 /// One place of a driven path; `state` colours the path from here to the next place
 /// (state_color()) and indexes PictureOptions::state_names.
 struct PathPoint {

@@ -101,25 +101,20 @@ McapFile::Id add_json_channel(McapFile& file, const char* topic, const char* sch
 
 // ---- robots ----
 
-Json cube_of(const RobotPlate& plate, double bottom, double top, const Color& color) {
+Json cube_of(const RobotBox& box, const Color& color) {
+  const RobotPlate& plate = box.plate;
   return {{"pose", pose_at({0.5 * (plate.back + plate.front), 0.5 * (plate.left + plate.right),
-                            0.5 * (bottom + top)})},
-          {"size", vector_of({plate.front - plate.back, plate.left - plate.right, top - bottom})},
+                            0.5 * (box.bottom + box.top)})},
+          {"size",
+           vector_of({plate.front - plate.back, plate.left - plate.right, box.top - box.bottom})},
           {"color", color_of(color)}};
 }
 
-/// Running gear and hull as boxes in the robot's frame.
-Json body_of(const Assembly& robot, bool tracks, std::size_t number, const std::string& frame) {
+Json body_of(const RobotBoxes& boxes, std::size_t number, const std::string& frame) {
   constexpr Color kGear{0.2, 0.2, 0.2};
-  const RobotShape shape = shape_of(robot, tracks);
-  const AssemblyWheel& wheel = robot.wheels[0][0];
-  const double axle = wheel.centre.z();
   Json body = entity(0, frame, frame);
-  for (const RobotPlate& gear : shape.running_gear) {
-    body["cubes"].push_back(cube_of(gear, axle - wheel.radius_m, axle + wheel.radius_m, kGear));
-  }
-  body["cubes"].push_back(cube_of(shape.hull, axle - 0.3 * wheel.radius_m,
-                                  axle + 1.3 * wheel.radius_m, category_color(number)));
+  for (const RobotBox& gear : boxes.running_gear) body["cubes"].push_back(cube_of(gear, kGear));
+  body["cubes"].push_back(cube_of(boxes.hull, category_color(number)));
   return body;
 }
 
@@ -135,7 +130,6 @@ class RobotTopics {
   }
 
   const std::string& name() const { return name_; }
-  const SessionReader& session() const { return session_; }
 
   /// Reads rows [first, first + count), less at the end of the session.
   void read(std::uint64_t first, std::uint64_t count) {
@@ -377,9 +371,10 @@ void export_mcap(std::span<const SessionReader> sessions, const std::filesystem:
 
   if (options.robot.has_value()) {
     const bool tracks = setup_of(first.info(), {}).experiment.vehicle.tracks;
+    const RobotBoxes boxes = boxes_of(*options.robot, tracks);
     Json bodies = Json::array();
     for (std::size_t i = 0; i < robots.size(); ++i) {
-      bodies.push_back(body_of(*options.robot, tracks, i, robots[i].name()));
+      bodies.push_back(body_of(boxes, i, robots[i].name()));
     }
     const auto channel = file.add_channel("/robots", "json", scene);
     file.add_message(channel, range.first * tick_ns, scene_of(std::move(bodies)).dump());

@@ -192,23 +192,17 @@ class StopRows {
   std::array<std::vector<double>, kFrameColumns.size()> columns_;
 };
 
-Json box(const RobotPlate& plate, double bottom, double top) {
-  return {{"back", plate.back}, {"front", plate.front}, {"right", plate.right},
-          {"left", plate.left}, {"bottom", bottom},     {"top", top}};
+Json json_of(const RobotBox& box) {
+  return {{"back", box.plate.back}, {"front", box.plate.front}, {"right", box.plate.right},
+          {"left", box.plate.left}, {"bottom", box.bottom},     {"top", box.top}};
 }
 
-/// Running gear and hull as boxes in the robot's frame.
-Json boxes_of(const Assembly& robot, bool tracks) {
-  const RobotShape shape = shape_of(robot, tracks);
-  const AssemblyWheel& wheel = robot.wheels[0][0];
+/// Running gear and hull in the robot's frame.
+Json json_of(const RobotBoxes& boxes) {
   Json json;
   json["gear"] = Json::array();
-  for (const RobotPlate& gear : shape.running_gear) {
-    json["gear"].push_back(
-        box(gear, wheel.centre.z() - wheel.radius_m, wheel.centre.z() + wheel.radius_m));
-  }
-  json["hull"] = box(shape.hull, wheel.centre.z() - 0.3 * wheel.radius_m,
-                     wheel.centre.z() + 1.3 * wheel.radius_m);
+  for (const RobotBox& gear : boxes.running_gear) json["gear"].push_back(json_of(gear));
+  json["hull"] = json_of(boxes.hull);
   return json;
 }
 
@@ -335,8 +329,8 @@ std::string run_page(std::span<const SessionReader> sessions, const RunPageOptio
     Json robot = add_robot(page, sessions[i], stops, "robot-" + number + "-", options.progress);
     if (sessions.size() > 1) robot["name"] = "robot " + number;
     if (options.robot) {
-      robot["boxes"] =
-          boxes_of(*options.robot, setup_of(session.info(), {}).experiment.vehicle.tracks);
+      const bool tracks = setup_of(session.info(), {}).experiment.vehicle.tracks;
+      robot["boxes"] = json_of(boxes_of(*options.robot, tracks));
     }
     robots.push_back(std::move(robot));
   }

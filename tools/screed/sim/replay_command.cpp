@@ -284,12 +284,11 @@ int replay_run(const ReplayArguments& arguments) {
   bool identical = true;
   TaskBar bar(arguments.json);
   for (std::size_t i = 0; i < files.size(); ++i) {
-    const SessionReader session(files[i]);
     OutputChanges outputs;
     ReplayOptions options;
     options.progress = bar.progress();
     if (what_if) {
-      options.parameters = changed_parameters(session.info(), arguments.sets);
+      options.parameters = changed_parameters(SessionReader(files[i]).info(), arguments.sets);
       options.on_tick = [&](const auto&... of_tick) { outputs.add(of_tick...); };
     }
     const ReplayResult result = replay_session(files[i], options);
@@ -306,7 +305,7 @@ int replay_run(const ReplayArguments& arguments) {
     if (!arguments.picture.has_value()) continue;
     const std::string path = picture_path(*arguments.picture, i, files.size());
     json["picture"] = path;
-    draw(arguments, session, outputs, path, of);
+    draw(arguments, SessionReader(files[i]), outputs, path, of);
   }
   if (arguments.json) {
     print_robots(robots);
