@@ -35,9 +35,9 @@ define interface_archive
 $(B)/lib$(1).a: $(INTERFACE_OBJECTS) host_sim/interface/$(1).symbols
 	@echo "  AR   $$@"
 	@$$(CXX) -r -nostdlib $$(call only_needed,$(1)) $(INTERFACE_OBJECTS) -o $$(@:.a=.o)
-	@objcopy --strip-unneeded $$(addprefix --keep-global-symbol=,$$(call symbols_of,$(1))) $$(@:.a=.o)
+	@$$(OBJCOPY) --strip-unneeded $$(addprefix --keep-global-symbol=,$$(call symbols_of,$(1))) $$(@:.a=.o)
 	@rm -f $$@
-	@ar rcs $$@ $$(@:.a=.o)
+	@$$(AR) rcs $$@ $$(@:.a=.o)
 endef
 INTERFACE_ARCHIVES := screed-soil screed-core
 $(foreach name,$(INTERFACE_ARCHIVES),$(eval $(call interface_archive,$(name))))

@@ -5,6 +5,8 @@
 
 SYSROOT := $(abspath $(BUILD_ROOT))/sysroot/root
 CXX := aarch64-linux-gnu-g++ --sysroot=$(SYSROOT)
+AR := aarch64-linux-gnu-ar
+OBJCOPY := aarch64-linux-gnu-objcopy
 export PKG_CONFIG_SYSROOT_DIR := $(SYSROOT)
 export PKG_CONFIG_LIBDIR := $(SYSROOT)/usr/lib/aarch64-linux-gnu/pkgconfig:$(SYSROOT)/usr/share/pkgconfig
 # $(call runnable,PROGRAM): PROGRAM becomes PROGRAM.elf and a script that runs it. What it starts itself finds its

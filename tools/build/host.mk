@@ -234,10 +234,10 @@ endef
 LIBRARY_OBJECTS := $(call objects,$(CORE_SOURCES)) $(HOT_OBJECTS) $(COLD_OBJECTS)
 $(LIBRARY): $(LIBRARY_OBJECTS) $(B)/link.flags
 	@rm -f $@
-	@ar rcs $@ $(filter %.o,$^)
+	@$(AR) rcs $@ $(filter %.o,$^)
 $(COMMAND_LINE): $(call objects,$(COMMAND_LINE_SOURCES))
 	@rm -f $@
-	@ar rcs $@ $^
+	@$(AR) rcs $@ $^
 $(SCREED): $(B)/tools/screed/main.o $(LIBRARY) $(B)/link.flags
 	$(call link)
 

@@ -27,6 +27,7 @@ $(error BUILD=$(BUILD): release, debug, asan or arm64)
 endif
 # The compiler of programs that the build itself runs.
 HERE_CXX := $(CXX)
+OBJCOPY := objcopy
 ifeq ($(BUILD),arm64)
 include tools/arm64/arm64.mk
 endif
