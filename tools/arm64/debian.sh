@@ -46,15 +46,17 @@ case $what in
     mapfile -t packages < <(sed -e 's/#.*//' "$@" | grep -E '^(lib|zlib|nlohmann|tiny-dnn)')
     apt-get install -y -qq --download-only libc6-dev libstdc++-12-dev "${packages[@]}" > "$folder/apt/log" 2>&1 ||
       { cat "$folder/apt/log" >&2; exit 1; }
-    rm -rf "$folder/root"
-    mkdir "$folder/root"
-    for package in "$folder"/apt/cache/archives/*.deb; do dpkg-deb -x "$package" "$folder/root"; done
+    root=$folder/root.new
+    rm -rf "$root" "$folder/root"
+    mkdir "$root"
+    for package in "$folder"/apt/cache/archives/*.deb; do dpkg-deb -x "$package" "$root"; done
     # Links by name from the root would lead out of here. HDF5's is made only when the package is set up.
-    find "$folder/root" -type l -lname '/*' -printf '%p %l\n' | while read -r link to; do
-      ln -sfn "$(realpath -m --relative-to="$(dirname "$link")" "$folder/root$to")" "$link"
+    find "$root" -type l -lname '/*' -printf '%p %l\n' | while read -r link to; do
+      ln -sfn "$(realpath -m --relative-to="$(dirname "$link")" "$root$to")" "$link"
     done
-    ln -s hdf5-serial.pc "$folder/root/usr/lib/aarch64-linux-gnu/pkgconfig/hdf5.pc"
+    ln -s hdf5-serial.pc "$root/usr/lib/aarch64-linux-gnu/pkgconfig/hdf5.pc"
     rm -r "$folder/apt"
+    mv "$root" "$folder/root"
     ;;
   ode)
     own_apt "$(dpkg --print-architecture)" deb-src

@@ -88,7 +88,7 @@ TINY_DNN_OBJECTS := $(call objects,$(TINY_DNN_SOURCES))
 $(TINY_DNN_OBJECTS): EXTRA_FLAGS = -idirafter $(B)/tiny_dnn
 $(TINY_DNN_OBJECTS): | $(B)/tiny_dnn/third_party/stb
 # tiny-dnn looks for stb in a folder of its own sources, which Debian's package leaves out.
-$(B)/tiny_dnn/third_party/stb:
+$(B)/tiny_dnn/third_party/stb: | $(SYSROOT)
 	@mkdir -p $(@D)
 	@ln -sfn "$$(pkg-config --variable=includedir stb)" $@
 # Large matrices on which no world's bits depend: Eigen with its vector code, by another name, since a linker takes one
