@@ -101,7 +101,8 @@ void BeltGround::find_cells(const BeltStride& stride, const TrackPlane& about) {
                      0.5 + (0.5 * tracks_.width_m - std::abs(cell.y - middle(side))) / across_edge);
         if (cell.share <= kMinShare) continue;
         cell.at = {0, ix, iy};
-        cell.flow = stride.shear.at(side).patch_flow_m.at(patch_of(cell.x));
+        cell.patch = patch_of(cell.x);
+        cell.flow = stride.shear[side].patch_flow_m[cell.patch];
         if (!flow_.grid().find(cell.at)) continue;
         const double r = tracks_.radius_m;
         if (beyond > 0.0) cell.over = r - std::sqrt(r * r - beyond * beyond);
@@ -248,7 +249,7 @@ void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::siz
     along += cell.share * cell.x;
     square += cell.share * cell.x * cell.x;
     depth += cell.share * cell.depth;
-    flow_.shear(cell.at.node, cell.share * shear.patch_m.at(patch_of(cell.x)));
+    flow_.shear(cell.at.node, cell.share * shear.patch_m[cell.patch]);
   }
   if (cells <= 0.0) return;
   along /= cells;
@@ -291,10 +292,9 @@ void BeltGround::keep_support(const TrackPlane& plane, Stance& stance) const {
     for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
       const Cell& cell = cells_[i];
       if (cell.pressure <= 0.0) continue;
-      const std::size_t patch = patch_of(cell.x);
       const double touched = cell_area_ * cell.share;
-      support.load.at(side).at(patch) += touched * cell.pressure;
-      support.area.at(side).at(patch) += touched;
+      support.load[side][cell.patch] += touched * cell.pressure;
+      support.area[side][cell.patch] += touched;
       sum += touched * cell.pressure;
       front = std::max(front, cell.x + half_cell);
       rear = std::min(rear, cell.x - half_cell);

@@ -90,6 +90,7 @@ class BeltGround {
     GridNode at;
     double x;  // in the robot's axes, from where the plane's height counts, m
     double y;
+    std::size_t patch;  // of the belt, above it
     double share;  // of the cell that lies below
     double over;   // of the belt's lower surface over its lower run, m
     double level;  // from which sinkage counts, m

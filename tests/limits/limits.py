@@ -22,7 +22,7 @@ WINDOW_S = 0.5
 MOST_LIFT_M = 0.25
 GRAVITY = 9.80665
 
-DRIVES = ["experiment.algorithm=drive", "drive.speed=0.15"]
+DRIVES = ["experiment.algorithm=drive", "drive.speed=0.15", "later.at=1", "later.yaw_kp=0"]
 WORLDS = {
     "level": ("straight_ruts", ["map.model=rigid", "trap.kind=none", "vehicle.tracks=false", *DRIVES]),
     "rigid": ("first_drive", DRIVES),

@@ -303,6 +303,60 @@ TEST_F(RunEnds, AtItsTimeWithNothingToSay) {
   EXPECT_EQ(result.err, "");
 }
 
+// `screed sim --from RUN --at S`: closed loop from a moment of a recorded run on.
+
+class OnceMore : public Program {
+ protected:
+  Json recorded() {
+    const Result result =
+        run("sim level_bed --hal surrogate --set experiment.algorithm=random_walk --duration 16 "
+            "--set robots.count=2 --no-pictures --json --out was");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(result.out);
+  }
+};
+
+TEST_F(OnceMore, TheRunIsTheRecordedOneUpToTheMomentAndReplays) {
+  const Json was = recorded();
+  const std::string change = " --set parameters.walk_speed_max=250 --no-pictures --json --out is";
+  const Result result = run("sim --from was --at 11" + change);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json is = Json::parse(result.out);
+  EXPECT_EQ(is["world"], was["world"]);
+  EXPECT_EQ(is["time_s"], 16.0);
+  EXPECT_GT(is["parts_from"]["time_s"], 11.0);
+  EXPECT_LT(is["parts_from"]["time_s"], 12.0);
+  EXPECT_GT(is["distance_m"], was["distance_m"]);
+  EXPECT_EQ(run("replay is").exit_code, 0);
+  // Its experiment says all of it.
+  const Result again = run("sim is/experiment.ini --hal surrogate --no-pictures --json --out more");
+  EXPECT_EQ(Json::parse(again.out)["content_hash"], is["content_hash"]);
+}
+
+TEST_F(OnceMore, WhatCannotBeChangedThenIsRefused) {
+  recorded();
+  const std::string from = "sim --from was --at 11 --out is --set ";
+  expect_refused(run(from + "parameters.stroke_time=900"), 2,
+                 {"stroke_time", "[later]", "known are at, climb_threshold"});
+  expect_refused(run(from + "map.size=2"), 2, {"map.size=2", "allowed is parameters.KEY"});
+  expect_refused(run(from + "parameters.walk_speed_max=20"), 2, {"[later] walk_speed_min = 60"});
+  expect_refused(run("sim --from was --at 16 --set parameters.yaw_kp=9"), 2,
+                 {"--at 16", "lasts 16 s"});
+  expect_refused(run("sim --from was --set parameters.yaw_kp=9"), 2, {"--from needs --at"});
+  expect_refused(run("sim x.ini --from was --at 3 --set parameters.yaw_kp=9"), 2, {"without FILE"});
+}
+
+TEST_F(OnceMore, ARunOfAnotherWorldIsNoted) {
+  recorded();
+  std::filesystem::remove(root_ / "was" / "summary.json");  // which says what world
+  const Result result = run(
+      "sim --from was --at 11 --set parameters.walk_speed_max=250 --duration 12 --no-pictures "
+      "--quiet --out is");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("was recorded by another program, in another world"), std::string::npos)
+      << result.err;
+}
+
 // Batches from a table, as a user meets them: `screed record FILE --table CSV` and what it leaves
 // out when it is run again.
 

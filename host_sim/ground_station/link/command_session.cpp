@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/math/crc16.h"
 #include "firmware/protocol/e2e.h"
 #include "firmware/protocol/messages.h"
 #include "firmware/security/command_mac.h"
@@ -238,13 +237,9 @@ std::optional<int32_t> CommandSession::read_parameter(uint16_t index,
 }
 
 void CommandSession::start_write(uint16_t index, int32_t value) {
-  CanFrame staged = frame_of(message::ParamStage{index, value});
-  staged.id = id_of_node(staged.id, node());
-  constexpr uint8_t kSignedSize = 4;  // index and lower half of the value
-  const uint16_t crc = crc16_ccitt(staged.data + kE2eHeaderSize, kSignedSize);
-  start(CommandOp::kParameterCommit,
-        static_cast<uint32_t>(index & 0xFFU) | static_cast<uint32_t>(crc) << 8U);
-  staged_ = staged;
+  const StagedParameter staged = stage_parameter(node(), index, value);
+  start(CommandOp::kParameterCommit, staged.argument);
+  staged_ = staged.frame;
 }
 
 std::optional<CommandAnswer> CommandSession::write_parameter(uint16_t index, int32_t value) {

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <numeric>
 
+#include "firmware/math/crc16.h"
+#include "firmware/protocol/e2e.h"
 #include "firmware/security/command_mac.h"
 #include "host_sim/core/errors.h"
 #include "schema/class_values.h"
@@ -102,6 +104,14 @@ uint32_t command_argument(const DriveArgument& argument) {
   uint8_t bytes[3];
   put_drive_argument(bytes, argument);
   return static_cast<uint32_t>(bytes[0] | bytes[1] << 8 | bytes[2] << 16);
+}
+
+StagedParameter stage_parameter(uint8_t node, uint16_t number, int32_t value) {
+  CanFrame frame = frame_of(message::ParamStage{number, value});
+  frame.id = id_of_node(frame.id, node);
+  constexpr uint8_t kSignedSize = 4;  // number and lower half of the value
+  const uint16_t crc = crc16_ccitt(frame.data + kE2eHeaderSize, kSignedSize);
+  return {frame, static_cast<uint32_t>(number & 0xFFU) | static_cast<uint32_t>(crc) << 8U};
 }
 
 void CommandSigner::handle_frame(const CanFrame& frame) {

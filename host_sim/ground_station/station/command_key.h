@@ -48,6 +48,14 @@ CredentialRecord credential_record(const Credentials& credentials);
 /// The 24 bits of a command whose argument is that of a drive or a position fix.
 uint32_t command_argument(const DriveArgument& argument);
 
+/// A new value of a parameter, as a robot takes it: a frame, not yet protected, and the argument of
+/// CommandOp::kParameterCommit, which follows it.
+struct StagedParameter {
+  CanFrame frame;
+  uint32_t argument;
+};
+StagedParameter stage_parameter(uint8_t node, uint16_t number, int32_t value);
+
 class CommandSigner {
  public:
   explicit CommandSigner(const CommandKey& key) : key_(key) {}

@@ -57,6 +57,9 @@ namespace {
 
 constexpr uint64_t kHeartbeatTicks = kTickRate_hz / 5;
 constexpr uint64_t kCommandTicks = kTickRate_hz / 4;
+// Apart from heartbeats, other commands and fixes.
+constexpr uint64_t kChangeTicks = kTickRate_hz / 2;
+constexpr uint64_t kChangeSlot = 18;
 
 }  // namespace
 
@@ -83,10 +86,33 @@ void GroundStation::handle_message(uint64_t now_us, const CanFrame& frame) {
   }
   if (id == kIdCommandAck && frame.size == message::CommandAck::kSize) {
     report_.answer = message::CommandAck::unpack(frame.data);
+    handle_answer(*report_.answer);
   }
   signer_.handle_frame(frame);
   if (log_ == nullptr) return;
   *log_ << candump_line(now_us, "screed0", frame);
+}
+
+void GroundStation::handle_answer(const message::CommandAck& answer) {
+  if (changes_.values.empty() || answer.op != static_cast<uint8_t>(CommandOp::kParameterCommit) ||
+      answer.freshness != commit_) {
+    return;
+  }
+  const auto first = changes_.values.begin();
+  const auto result = static_cast<RequestResult>(answer.result);
+  if (result == RequestResult::kDone) changes_.values.erase(first);
+  // It may be refused beside another one that is still to come.
+  if (result == RequestResult::kBadArgument)
+    std::rotate(first, first + 1, changes_.values.end());
+}
+
+void GroundStation::add_change(std::vector<uint8_t>& lines) {
+  const auto& [number, value] = changes_.values.front();
+  const StagedParameter staged = stage_parameter(signer_.node(), number, value);
+  add_frame(staged.frame, stage_counter_, lines);
+  const CanFrame commit = signer_.sign(CommandOp::kParameterCommit, staged.argument);
+  add_line(commit, lines);
+  commit_ = commit.data[kCommandFreshnessOffset];
 }
 
 void GroundStation::add_frame(CanFrame frame, uint8_t& counter, std::vector<uint8_t>& lines) {
@@ -130,6 +156,10 @@ std::vector<uint8_t> GroundStation::transmit(uint64_t now_us) {
   if (fixes_.has_value() && report_.heard) {
     if (const auto fix = fixes_->at(ticks_, robot_x_m_, robot_y_m_))
       add_line(signer_.sign(CommandOp::kPositionFix, *fix), lines);
+  }
+  if (!changes_.values.empty() && report_.heard && ticks_ % kChangeTicks == kChangeSlot &&
+      static_cast<double>(ticks_) >= changes_.at_s * kTickRate_hz) {
+    add_change(lines);
   }
   ++ticks_;
   return lines;

@@ -73,6 +73,16 @@ struct DriveCommand {
   bool operator==(const DriveCommand&) const = default;
 };
 
+/// Parameters that the ground station sets while the robot runs, as `screed param set` does.
+struct ParameterChanges {
+  double at_s = 0.0;  ///< none before
+  struct Value {
+    uint8_t number;
+    int16_t value;
+  };
+  std::vector<Value> values;
+};
+
 /// What the ground station has heard.
 struct RobotReport {
   bool heard = false;
@@ -98,6 +108,9 @@ class GroundStation {
     drive_ = command;
     drive_is_new_ = true;
   }
+  /// Sets these parameters from their time on: one after the other, each again until the robot has
+  /// taken it. The last call counts.
+  void change(const ParameterChanges& changes) { changes_ = changes; }
   /// What an overhead camera sees: where the robot is, m.
   void see_robot(double x_m, double y_m) {
     robot_x_m_ = x_m;
@@ -115,12 +128,17 @@ class GroundStation {
 
  private:
   void handle_message(uint64_t now_us, const CanFrame& frame);
+  void add_change(std::vector<uint8_t>& lines);
+  void handle_answer(const message::CommandAck& answer);
   void add_frame(CanFrame frame, uint8_t& counter, std::vector<uint8_t>& lines);
   static void add_line(const CanFrame& frame, std::vector<uint8_t>& lines);
 
   bool arm_;
   std::optional<DriveCommand> drive_;
   bool drive_is_new_ = false;
+  ParameterChanges changes_;  ///< those that are left
+  uint8_t stage_counter_ = 0;
+  uint8_t commit_ = 0;  ///< the freshness of the command that was to set the first of them
   std::ostream* log_;
   CommandSigner signer_;
   std::optional<PositionFixes> fixes_;

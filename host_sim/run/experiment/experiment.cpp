@@ -149,6 +149,21 @@ void check_parameters(const Parameters& p, const std::string& section) {
   check("walk_leg_min", p.walk_leg_min(), "walk_leg_max", p.walk_leg_max());
 }
 
+/// What [later] makes of a robot's parameters.
+void check_later(const LaterSection& later, Parameters parameters) {
+  const ParameterChanges changes = later.changes();
+  if (later.at_s.has_value() && changes.values.empty())
+    throw InputError("[later] at: no parameter is set then; expected a key of [later] beside it");
+  for (const auto& [number, value] : changes.values) {
+    if (!later.at_s.has_value()) {
+      throw InputError(std::string("[later] ") + kParameterTable[number].name +
+                       ": when is not said; expected at beside it");
+    }
+    parameters.values[number] = value;
+  }
+  check_parameters(parameters, "later");
+}
+
 /// What robots have of their own.
 void check_robot_sections(const Experiment& experiment) {
   for (const auto& [place, value] : experiment.of_robots) {
@@ -165,6 +180,7 @@ void check_robot_sections(const Experiment& experiment) {
                        ": that records one robot, alone");
     }
     check_parameters(own.parameters, section_of_robot(robot));
+    check_later(experiment.later, own.parameters);
   }
 }
 
@@ -187,6 +203,7 @@ void check(const Experiment& experiment) {
   check_robots(experiment);
   check_robot_sections(experiment);
   check_parameters(experiment.parameters, "parameters");
+  check_later(experiment.later, experiment.parameters);
   if (!experiment.map.filename.empty() && experiment.map.ramp_deg != 0.0) {
     throw InputError("[map] filename = '" + experiment.map.filename +
                      "' and ramp are both given; a ramp needs no image");

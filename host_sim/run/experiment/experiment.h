@@ -46,6 +46,7 @@ struct Experiment {
   ExperimentSection experiment;
   DriveSection drive;
   FixesSection fixes;
+  LaterSection later;
   BatterySection battery;
   SensorsSection sensors;
   RadioSection radio;

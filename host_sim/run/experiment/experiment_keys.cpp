@@ -261,6 +261,7 @@ std::vector<ExperimentKey> make_keys() {
   list_section(keys, "physics", &Experiment::physics);
   list_section(keys, "metrics", &Experiment::metrics);
   list_parameters(keys);
+  list_section(keys, "later", &Experiment::later);
   return keys;
 }
 
@@ -314,7 +315,7 @@ namespace {
 std::string elsewhere(const std::string& name, const std::string& where) {
   std::string text;
   for (const ExperimentKey& key : experiment_keys()) {
-    if (key.name != name || key.section.empty() || key.section.starts_with("robot_")) continue;
+    if (key.name != name || key.section.empty() || key.section == "later") continue;
     text += text.empty() ? "; did you mean " : " or ";
     text += where == "--set" ? key.section + "." + name : "[" + key.section + "] " + name;
   }

@@ -1,9 +1,10 @@
 // The sections of an experiment file that say what drives, and how: [experiment], [vehicle],
-// [battery], [drive], [sensors], [radio], [fixes], [metrics], [robots]. Each lists its keys once;
-// experiment_keys.cpp reads and writes them.
+// [battery], [drive], [sensors], [radio], [fixes], [later], [metrics], [robots]. Each lists its keys
+// once; experiment_keys.cpp reads and writes them.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <iterator>
 #include <optional>
@@ -11,10 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "firmware/parameters/parameters.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/finite_number.h"
 #include "host_sim/devices/sensors/imu_model.h"
 #include "host_sim/ground_station/station/command_key.h"
+#include "host_sim/ground_station/station/ground_station.h"
 
 namespace screed {
 
@@ -282,6 +285,36 @@ struct FixesSection {
               "mean time from the end of an outage to the next one (exponential); 0: no outages",
               &T::outage_every_s);
     keys.real("outage", "s", 0, 36000, "how long an outage lasts", &T::outage_s);
+  }
+};
+
+// [later] of an experiment file: live parameters that the ground station sets during the run.
+
+struct LaterSection {
+  std::optional<double> at_s;
+  std::array<std::optional<int16_t>, Parameters::kCount> values;  ///< by number
+
+  ParameterChanges changes() const {
+    ParameterChanges changes{at_s.value_or(0.0), {}};
+    for (uint8_t number = 0; number < Parameters::kCount; ++number) {
+      if (values.at(number).has_value()) changes.values.push_back({number, *values.at(number)});
+    }
+    return changes;
+  }
+
+  template <class Keys>
+  static void list(Keys& keys) {
+    keys.real("at", "s", 0, 1e6, "from this time on the ground station sets the others",
+              &LaterSection::at_s);
+    for (const ParameterInfo& info : kParameterTable) {
+      const auto number = static_cast<uint8_t>(info.number);
+      if (!changes_while_running(number)) continue;
+      keys.integer(info.name, info.unit, static_cast<uint64_t>(info.min),
+                   static_cast<uint64_t>(info.max), "in place of that of [parameters], from then on",
+                   [number](LaterSection& later) -> std::optional<int16_t>& {
+                     return later.values.at(number);
+                   });
+    }
   }
 };
 

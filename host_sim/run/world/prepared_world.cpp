@@ -127,9 +127,14 @@ void serialize(Archive& archive, DriveCommand& drive) {
   archive(drive.speed_m_per_s, drive.yaw_rate_deg_per_s);
 }
 template <typename Archive>
+void serialize(Archive& archive, ParameterChanges::Value& change) {
+  archive(change.number, change.value);
+}
+template <typename Archive>
 void serialize(Archive& archive, RobotOptions& robot) {
   archive(robot.settings.board, robot.settings.parameters.values, robot.settings.credentials,
-          robot.drive, robot.ground_key.bytes, robot.ground_key.robot_id, robot.lay_on_side_at_s);
+          robot.drive, robot.changes.at_s, robot.changes.values, robot.ground_key.bytes,
+          robot.ground_key.robot_id, robot.lay_on_side_at_s);
 }
 template <typename Archive>
 void serialize(Archive& archive, ImuErrors& imu) {
@@ -157,7 +162,7 @@ void serialize(Archive& archive, WorldOptions& options) {
 
 namespace {
 
-constexpr StateName kName = {"world", 1};
+constexpr StateName kName = {"world", 2};
 
 }  // namespace
 

@@ -77,7 +77,9 @@ RobotDevices::RobotDevices(const WorldOptions& options, const RobotOptions& own,
       ground_end_(own.ground_port),
       station_m_(robot_position(robot)),
       encoder_counts_per_turn_(options.encoder_counts_per_turn),
-      lay_on_side_tick_(tick_at(own.lay_on_side_at_s)) {}
+      lay_on_side_tick_(tick_at(own.lay_on_side_at_s)) {
+  ground_.change(own.changes);
+}
 
 void RobotDevices::execute_events(uint64_t tick, RobotView& robot) {
   if (lay_on_side_tick_ == tick) robot.lay_on_side();

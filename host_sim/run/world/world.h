@@ -51,6 +51,7 @@ struct RobotOptions {
   /// for this machine.
   std::optional<RobotImage> image;
   std::optional<DriveCommand> drive;   ///< the ground station commands it
+  ParameterChanges changes;            ///< the ground station makes them
   CommandKey ground_key = test_key();  ///< what the ground station signs with
   /// Programs outside at the ground end of the radio; may be null, must outlive the world.
   GroundPort* ground_port = nullptr;

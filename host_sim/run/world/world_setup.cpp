@@ -316,6 +316,7 @@ std::vector<RobotOptions> robot_options(const Experiment& experiment, const std:
     if (!robot_has_own(experiment, i, "parameters", "random_seed"))
       own.settings.parameters = parameters_of_robot(its.parameters, i);
     own.drive = drive_of(its);
+    own.changes = experiment.later.changes();
     own.ground_key = key_of_robot(ground_key, i);
     robots.push_back(own);
   }

@@ -1,16 +1,24 @@
-// `screed sim FILE`: runs an experiment and shows what happened.
+// `screed sim FILE`: runs an experiment and shows what happened. With --from RUN: what would have
+// happened had a parameter been another one from a moment on?
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/figures.h"
+#include "host_sim/core/ini_file.h"
 #include "host_sim/ground_station/link/external_port.h"
+#include "host_sim/run/comparison/session_comparison.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/experiment/robot_sections.h"
+#include "host_sim/run/session/run_folder.h"
+#include "host_sim/run/session/session_reader.h"
 #include "host_sim/run/simulation/outcome.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "tools/screed/cli/command.h"
@@ -30,6 +38,8 @@ struct SimArguments {
   BatchArguments runs;
   std::optional<std::uint64_t> seed;
   std::optional<double> duration_s;
+  std::optional<std::string> from;
+  std::optional<double> changes_at_s;  ///< with from
   WorldChoice world;
   std::optional<std::string> can;
   std::optional<std::string> pty;
@@ -188,11 +198,87 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
   print("\n  run folder    {}\n  content hash  {}\n", s.folder, s.content_hash);
 }
 
-int run_sim(const SimArguments& arguments, const std::string& version) {
-  if (arguments.list_keys) {
+// ---- from a moment of a recorded run on ----
+
+/// A parameter that the user sets, as the key of [later] that the ground station follows.
+std::string set_later(const std::string& text) {
+  const IniEntry entry = parse_override(text);
+  if (entry.section != "parameters") {
+    throw InputError("--set " + text +
+                     ": until --at the run is as it was recorded; allowed is parameters.KEY");
+  }
+  return "later." + entry.key + "=" + entry.value;
+}
+
+/// The recorded run from its start, in its world, with other parameters from --at on. Throws
+/// UsageError, and InputError where RUN has no such moment.
+SimArguments once_more(SimArguments arguments) {
+  BatchArguments& runs = arguments.runs;
+  if (!runs.files.empty() || runs.table.has_value() || runs.missing || arguments.seed.has_value())
+    throw UsageError("--from RUN says what is run: without FILE, --table, --missing and --seed");
+  // Elsewhere the time of a screenshot; here that one is made at the end.
+  arguments.changes_at_s = std::exchange(arguments.viewer.options.screenshot_at, std::nullopt);
+  if (!arguments.changes_at_s.has_value() || runs.sets.empty())
+    throw UsageError("--from needs --at and --set parameters.KEY=VALUE");
+  const std::filesystem::path file = session_files(*arguments.from).front();
+  const SessionReader session(file);
+  const double end_s = static_cast<double>(session.frames()) / kTickRate_hz;
+  const std::string at = plain_text(*arguments.changes_at_s);
+  if (*arguments.changes_at_s >= end_s) {
+    throw InputError("--at " + at + ": " + *arguments.from + " lasts " +
+                     plain_text(end_s) + " s");
+  }
+  for (std::string& set : runs.sets) set = set_later(set);
+  runs.sets.push_back("later.at=" + at);
+  runs.files = {(file.parent_path() / "experiment.ini").string()};
+  if (read_experiment(runs.files.front()).later.at_s.has_value())
+    throw InputError(runs.files.front() + ": has a section [later] of its own; change it there");
+  if (!arguments.world.board.has_value()) arguments.world.board = session.info().board_name;
+  std::ifstream summary(file.parent_path() / "summary.json");
+  if (arguments.world.hal == "native") {
+    const Json was = Json::parse_or_null(summary);
+    if (was.is_object()) arguments.world.hal = was["world"].value("hal", "native");
+  }
+  return arguments;
+}
+
+/// Where the robots of two runs part, the first of them; nothing where none does.
+std::optional<FirstDifference> parting(const std::string& from, const std::filesystem::path& to) {
+  const std::vector<std::filesystem::path> was = session_files(from);
+  const std::vector<std::filesystem::path> is = session_files(to);
+  std::optional<FirstDifference> first;
+  for (size_t i = 0; i < std::min(was.size(), is.size()); ++i) {
+    const SessionComparison both = compare_sessions(SessionReader(was[i]), SessionReader(is[i]));
+    if (both.first.has_value() && (!first.has_value() || both.first->tick < first->tick))
+      first = both.first;
+  }
+  return first;
+}
+
+/// What came of it, in a line and in `json`; false where the run is another one before --at.
+bool tell_parting(const SimArguments& arguments, const std::filesystem::path& to, Json& json) {
+  const std::optional<FirstDifference> first = parting(*arguments.from, to);
+  json["parts_from"] = {{"run", *arguments.from}, {"time_s", nullptr}, {"column", nullptr}};
+  std::string text = "never parts from " + *arguments.from;
+  if (first.has_value()) {
+    json["parts_from"]["time_s"] = first->time_s;
+    json["parts_from"]["column"] = first->column;
+    text = filled("parts from {} at {:.2f} s: {}", *arguments.from, first->time_s, first->column);
+  }
+  if (!arguments.runs.json) print("{}\n", text);
+  if (!first.has_value() || first->time_s > *arguments.changes_at_s) return true;
+  std::cerr << "note: before --at " << plain_text(*arguments.changes_at_s)
+            << " s nothing was changed: " << *arguments.from
+            << " was recorded by another program, in another world, or with commands from outside\n";
+  return false;
+}
+
+int run_sim(const SimArguments& given, const std::string& version) {
+  if (given.list_keys) {
     print_key_table(experiment_key_table() + robot_section_table());
     return 0;
   }
+  const SimArguments arguments = given.from.has_value() ? once_more(given) : given;
   if (arguments.runs.files.empty()) throw UsageError("FILE is required");
   std::vector<std::string> overrides;
   if (arguments.seed.has_value())
@@ -258,7 +344,14 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
         }
       },
       prepare);
-  if (arguments.runs.json) std::cout << json_of(summaries, several);
+  bool parted_late = true;
+  if (arguments.from.has_value() && !summaries.empty()) {
+    Json json = summary_json_with_folder(summaries.front());
+    parted_late = tell_parting(arguments, summaries.front().folder, json);
+    if (arguments.runs.json) std::cout << json.dump(2) << "\n";
+  } else if (arguments.runs.json) {
+    std::cout << json_of(summaries, several);
+  }
   std::cout << std::flush;
   for (const std::string& failure : failures) std::cerr << failure << "\n";
   if (watching.viewer) {
@@ -266,7 +359,7 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
     if (view->frames.has_value()) std::cerr << watching.viewer->times().text() << "\n";
   }
   if (const int code = interrupted_exit_code(); code != 0) return code;
-  return failures.empty() ? 0 : 1;
+  return failures.empty() && parted_late ? 0 : 1;
 }
 
 }  // namespace
@@ -280,6 +373,11 @@ void register_sim_command(Command& root, Program& program) {
              kSeedRange);
   add_number(command, "--duration", arguments.duration_s,
              "Simulated time [s]; overrides [experiment] duration", {0.01, 1e6});
+  command
+      .add_option("--from", arguments.from,
+                  "In place of FILE: this recorded run once more, but from --at S on with what "
+                  "--set parameters.KEY=VALUE says, which the ground station sets then")
+      ->type_name("RUN");
   command
       .add_option("--hal", arguments.world.hal,
                   "How the firmware runs: native: compiled for this machine; mcu: the flash image "

@@ -187,6 +187,69 @@ TEST(GroundStation, DamagedFramesAreCountedAndNotLogged) {
   EXPECT_TRUE(log.str().empty());
 }
 
+TEST(GroundStation, SetsParametersFromTheirTimeOnOneByOne) {
+  GroundStation ground(false, std::nullopt, nullptr);
+  ground.change({1.0, {{Parameters::k_climb_speed, 90}, {Parameters::k_stall_time, 400}}});
+  ground.receive(0, robot_heartbeat(RobotState::kRunning));
+  EXPECT_TRUE(commands(ground, 100).empty());
+  const auto next = [&ground] {
+    const std::vector<Sent> sent = transmit(ground, 100);
+    std::vector<message::ParamStage> staged;
+    for (size_t i = 0; i < sent.size(); ++i) {
+      if (sent[i].frame.id != kIdParamStage) continue;
+      staged.push_back(message::ParamStage::unpack(sent[i].frame.data));
+      const Sent& commit = sent.at(i + 1);
+      EXPECT_EQ(commit.tick, sent[i].tick);
+      EXPECT_EQ(commit.frame.data[0], static_cast<uint8_t>(CommandOp::kParameterCommit));
+      EXPECT_EQ(commit.frame.data[1], staged.back().index);
+    }
+    EXPECT_EQ(staged.size(), 2U);
+    return staged.at(1);
+  };
+  const auto answer = [&ground](RequestResult result, uint8_t freshness) {
+    ground.receive(0, line_of(frame_of(message::CommandAck{
+                          static_cast<uint8_t>(CommandOp::kParameterCommit), freshness,
+                          static_cast<uint8_t>(result), 0})));
+  };
+  EXPECT_EQ(next().index, Parameters::k_climb_speed);
+  EXPECT_EQ(next().value, 90);  // again, without an answer
+  answer(RequestResult::kBusy, 4);
+  EXPECT_EQ(next().index, Parameters::k_climb_speed);
+  answer(RequestResult::kBadArgument, 6);  // beside what the other one still is
+  EXPECT_EQ(next().index, Parameters::k_stall_time);
+  answer(RequestResult::kDone, 7);  // of an earlier command
+  EXPECT_EQ(next().value, 400);
+  answer(RequestResult::kDone, 10);
+  EXPECT_EQ(next().index, Parameters::k_climb_speed);
+  answer(RequestResult::kDone, 12);
+  EXPECT_TRUE(commands(ground, 200).empty());
+}
+
+TEST(GroundStation, ARunningRobotTakesTheParametersThatAreSetLater) {
+  GroundStation ground(true, DriveCommand{0.1, 0.0}, nullptr);
+  // The first is above what the second still is.
+  ground.change({6.0,
+                 {{Parameters::k_walk_speed_min, 200}, {Parameters::k_walk_speed_max, 220}}});
+  Parameters parameters;
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  TestRobot robot(parameters);
+  robot.heartbeats = false;
+  const auto live = [&](uint64_t first, uint64_t end) {
+    for (uint64_t tick = first; tick < end; ++tick) {
+      const std::vector<uint8_t> up = ground.transmit(tick * 10000);
+      robot.queue.insert(robot.queue.end(), up.begin(), up.end());
+      robot.tick();
+      ground.receive(tick * 10000, {robot.output.radio_out, robot.output.radio_out_count});
+    }
+  };
+  live(0, 600);
+  EXPECT_EQ(robot.robot.parameters().walk_speed_max(), 160);
+  live(600, 1400);
+  EXPECT_EQ(robot.robot.supervisor().state(), RobotState::kRunning);
+  EXPECT_EQ(robot.robot.parameters().walk_speed_min(), 200);
+  EXPECT_EQ(robot.robot.parameters().walk_speed_max(), 220);
+}
+
 TEST(GroundStation, BringsARealRobotToRun) {
   GroundStation ground(true, DriveCommand{0.1, 0.0}, nullptr);
   Parameters parameters;

@@ -163,6 +163,8 @@ TEST_F(ExperimentFile, EveryKeyOfTheTableIsReadAndWrittenBack) {
       if (row.key == "walk_speed_max") room = {"parameters.walk_speed_min=0"};
       if (row.key == "walk_leg_min") room = {"parameters.walk_leg_max=20000"};
       if (row.key == "walk_leg_max") room = {"parameters.walk_leg_min=100"};
+      if (row.section == "later")
+        room.emplace_back(row.key == "at" ? "later.yaw_kp=1" : "later.at=1");
       Experiment experiment;
       ASSERT_NO_THROW(experiment = read(file_with(row, value), room))
           << row.section << " " << row.key << " = " << value;
@@ -288,6 +290,27 @@ TEST_F(ExperimentFile, KeysThatDoNotFitTogether) {
       contains(error_message("[parameters]\nwalk_leg_min = 5000\n"), "walk_leg_min = 5000"));
   EXPECT_TRUE(contains(error_message("[map]\nfilename = a.png\nramp = 5\n"),
                        "FILE:2: [map] filename = 'a.png' and ramp are both given"));
+}
+
+TEST_F(ExperimentFile, LaterSetsLiveParametersAtATime) {
+  const Experiment experiment = read("[later]\nat = 12.5\nstall_time = 400\nclimb_speed = 90\n");
+  const ParameterChanges changes = experiment.later.changes();
+  EXPECT_EQ(changes.at_s, 12.5);
+  ASSERT_EQ(changes.values.size(), 2U);
+  EXPECT_EQ(changes.values[0].number, Parameters::k_climb_speed);
+  EXPECT_EQ(changes.values[0].value, 90);
+  EXPECT_EQ(changes.values[1].number, Parameters::k_stall_time);
+  EXPECT_EQ(changes.values[1].value, 400);
+  EXPECT_EQ(experiment.parameters.climb_speed(), Parameters().climb_speed());
+  EXPECT_TRUE(contains(error_message("[later]\nat = 1\n"), "FILE:2: [later] at: no parameter"));
+  EXPECT_TRUE(contains(error_message("[later]\nyaw_kp = 1\n"), "FILE:2: [later] yaw_kp: when"));
+  EXPECT_TRUE(contains(error_message("[later]\nat = 1\nstroke_time = 500\n"),
+                       "FILE:3: unknown key 'stroke_time' in [later]; did you mean [parameters]"));
+  EXPECT_TRUE(contains(error_message("[later]\nat = 1\nwalk_speed_max = 50\n"),
+                       "[later] walk_speed_min = 60 is above [later] walk_speed_max = 50"));
+  EXPECT_TRUE(contains(error_message("[robots]\ncount = 2\n[robot_1]\nwalk_speed_min = 120\n"
+                                     "[later]\nat = 1\nwalk_speed_max = 100\n"),
+                       "[later] walk_speed_min = 120 is above [later] walk_speed_max = 100"));
 }
 
 TEST_F(ExperimentFile, TheAlgorithmReachesTheParameters) {
