@@ -15,9 +15,20 @@ symbols_of = $(shell cat host_sim/interface/$(1).symbols)
 # No image is run by them: simavr would bring its licence.
 INTERFACE_OBJECTS := $(if $(filter yes,$(MCU)),$(B)/host_sim/run/world/without_simavr.o) $(LIBRARY)
 # What they do not need is dropped with all that it asks for; so the small ones need no library but the compiler's own.
-interface_libraries_screed = $$(sed 's/-lsimavr//' $(B)/link.flags)
+interface_libraries_screed = $$(sed 's|-lsimavr||; s|-lode|$(ODE_WITHIN) $(ODE_NEEDS)|' $(B)/link.flags)
 only_needed = -Wl,--gc-sections $(patsubst %,-Wl$(comma)-u$(comma)%,$(call symbols_of,$(1)))
 
+# ODE as a part of libscreed: it calls the sines that are defined there, as in the program; a shared one would call those
+# of the C library, whose bits depend on the processor. Debian's static one is for programs: a shared library may not
+# hold the address of another one's variable, so it gets an own one (ode_world.cpp).
+ODE_WITHIN := $(or $(ODE),$(B)/ode/libode.a)
+# What Debian's ODE tells convex bodies apart with.
+ODE_NEEDS := $(if $(ODE),,-l:libccd.so.2)
+$(B)/ode/libode.a:
+	@mkdir -p $(@D)
+	@$(OBJCOPY) --redefine-sym stdout=screed_stdout --redefine-sym stderr=screed_stderr \
+	  "$$(pkg-config --variable=libdir ode)/libode.a" $@
+$(B)/libscreed.so.$(INTERFACE_ABI): $(ODE_WITHIN)
 define interface_library
 $(B)/$(1).map: host_sim/interface/$(1).symbols
 	@mkdir -p $$(@D)

@@ -36,7 +36,9 @@ check 'a man page of the program' man -M "$tree/moved/share/man" -w screed
 check 'a man page of each subcommand' bash \
   -c '[ "$(ls "$0"/screed-*.1 | wc -l)" -eq "$("$1" --help | sed -n "/^Subcommands:/,/^$/p" | grep -cE "^  [a-z]")" ]' \
   "$tree/moved/share/man/man1" "$screed"
-check 'the version' bash -c '[[ "$("$0" --version)" =~ ^screed\ [0-9.]+.*\ \([0-9-]+\)$ ]]' "$screed"
+check 'the version' bash -c '[[ "$("$0" --version | head -n 1)" =~ ^screed\ [0-9.]+.*\ \([0-9-]+\)$ ]]' "$screed"
+check 'what is built in' bash -c '"$0" --version | grep -E "^built in: ODE $1, HDF5 [0-9.]+, (no )?simavr"' \
+  "$screed" "$(pkg-config --modversion ode)"
 check 'the licences of the terrains' test -n "$(find "$data/terrain" -iname '*README*' -o -iname '*LICEN*')"
 check 'the docs and the licence' test -s "$tree/moved/share/doc/screed/docs/architecture.md" \
   -a -s "$tree/moved/share/doc/screed/CHANGELOG.md" -a -s "$tree/moved/share/doc/screed/LICENSE"

@@ -2,8 +2,15 @@
 
 # WAYS: of tests/processors/run.sh; all without it.
 .PHONY: test-processors
-test-processors:  ## twelve runs on emulated processors, bit by bit (WAYS='older narrowest AVX2 nehalem arm64')
-test-processors: $(SCREED)
-	$(if $(filter-out arm64,$(or $(WAYS),arm64)),,+@$(MAKE) --no-print-directory BUILD=arm64 build)
-	@SCREED_PROGRAM=$(abspath $(SCREED)) ARM64_PROGRAM=$(abspath $(BUILD_ROOT)/arm64/screed) tests/processors/run.sh \
-	  $(WAYS)
+test-processors:  ## runs on emulated processors, bit by bit (WAYS='older narrowest AVX2 nehalem arm64')
+WITH_ARM64 := $(filter arm64,$(or $(WAYS),arm64))
+# Python and NumPy for arm64.
+PYTHON_ARM64 := $(abspath $(BUILD_ROOT))/python_arm64/root
+$(PYTHON_ARM64): tools/arm64/debian.sh tests/python/debian-packages.txt
+	@echo "  GET  Python for arm64"
+	@tools/arm64/debian.sh sysroot $(@D) tests/python/debian-packages.txt
+	@touch $@
+test-processors: $(SCREED) $(INTERFACE_LIBRARIES) $(if $(WITH_ARM64),$(PYTHON_ARM64))
+	$(if $(WITH_ARM64),+@$(MAKE) --no-print-directory BUILD=arm64 build libraries)
+	@RELEASE=$(abspath $(B)) ARM64=$(abspath $(BUILD_ROOT)/arm64) PYTHON_ARM64=$(PYTHON_ARM64) \
+	  SYSROOT=$(abspath $(BUILD_ROOT))/sysroot/root tests/processors/run.sh $(WAYS)

@@ -1,11 +1,12 @@
 #!/bin/bash
-# run.sh [WAY...]: twelve runs, each computed in the ways that are asked for (all of them without arguments), must have
-# the bits that they have on this processor as it is: drives of every kind of world, a flashed image, a network, a
-# replay of a session from here, a campaign.
+# run.sh [WAY...]: runs, each computed in the ways that are asked for (all of them without arguments), must have the
+# bits that they have on this processor as it is: drives of every kind of world, a flashed image, a network, a replay of
+# a session from here, a campaign, worlds that a C program and Python make.
 # Ends with "N passed, N failed".
 #
-# Needs SCREED_PROGRAM, for the way `arm64` ARM64_PROGRAM too (make test-processors sets both). An emulated processor
-# takes ten to forty times as long as this one.
+# Needs RELEASE, a folder with the program and its libraries, for the way `arm64` ARM64, the same for that, with SYSROOT
+# and PYTHON_ARM64, where its packages lie (make test-processors sets all). An emulated processor takes ten to forty
+# times as long as this one.
 set -uo pipefail
 declare -A ways=(
   [older]='env GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2,-AVX512F'
@@ -35,9 +36,9 @@ cp host_sim/data/experiments/soft_bed.ini "$folder"
 
 screed() {  # as the way says
   case $way in
-    here) "$SCREED_PROGRAM" "$@" ;;
-    arm64) "$ARM64_PROGRAM" "$@" ;;
-    *) ${ways[$way]} "$SCREED_PROGRAM" "$@" ;;
+    here) "$RELEASE/screed" "$@" ;;
+    arm64) "$ARM64/screed" "$@" ;;
+    *) ${ways[$way]} "$RELEASE/screed" "$@" ;;
   esac
 }
 drive() {
@@ -52,6 +53,30 @@ campaign() {
     > "$folder/log" 2>&1 ||
     { cat "$folder/log"; return 1; }
   sha256sum < "$folder/$way/runs.csv" | cut -c 1-32
+  rm -rf "${folder:?}/$way"
+}
+c_program() {
+  local build=$RELEASE compiler=gcc run=${ways[$way]-}
+  [ "$way" = arm64 ] && build=$ARM64 compiler=aarch64-linux-gnu-gcc run='qemu-aarch64 -L /usr/aarch64-linux-gnu'
+  $compiler -std=c99 -Ihost_sim/interface host_sim/interface/examples/world.c "$build/libscreed-core.a" -lstdc++ -lm \
+    -o "$folder/world" || return 1
+  screed prepare "$1" --out "$folder/$1.world" > "$folder/log" 2>&1 || { cat "$folder/log"; return 1; }
+  $run "$folder/world" "$folder/$1.world" | tail -n 1
+}
+# The module takes the library of the folder that it is told.
+python() {
+  local build=$RELEASE run="${ways[$way]-} /usr/bin/python3" lib=usr/lib/aarch64-linux-gnu
+  if [ "$way" = arm64 ]; then
+    build=$ARM64
+    run="qemu-aarch64 -L $SYSROOT -E PYTHONHOME=$PYTHON_ARM64/usr -E LD_LIBRARY_PATH=$SYSROOT/$lib"
+    run+=$(printf ":$PYTHON_ARM64/%s" {,usr/}lib/aarch64-linux-gnu $lib/blas $lib/lapack)
+    run+=" $PYTHON_ARM64/usr/bin/python3"
+  fi
+  PYTHONPATH=tools/python:$PYTHON_ARM64/usr/lib/python3/dist-packages SCREED_LIBRARY=$build/libscreed.so \
+    $run -c 'import screed, sys
+experiment, hal, seconds, out = sys.argv[1:]
+print(screed.sim(experiment, hal=hal, set={"experiment.duration": seconds}, out=out).content_hash)' \
+    "$@" "$folder/$way" || return 1
   rm -rf "${folder:?}/$way"
 }
 # A campaign starts the program anew, for its workers: under qemu-x86_64 these would run on this very processor, and of
@@ -74,7 +99,10 @@ runs=('drive first_drive --duration 20'
   "drive soft_bed --hal surrogate --model $PWD/nn/models/v2.json --duration 20"
   'drive first_drive --hal mcu --duration 3'
   'replay first_drive'
-  'campaign small.ini')
+  'campaign small.ini'
+  'c_program level_bed'
+  'python level_bed surrogate 60'
+  'python soft_bed native 4')
 
 passed=0
 failed=0

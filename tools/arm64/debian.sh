@@ -43,7 +43,7 @@ END
 case $what in
   sysroot)
     own_apt arm64 deb
-    mapfile -t packages < <(sed -e 's/#.*//' "$@" | grep -E '^(lib|zlib|nlohmann|tiny-dnn)')
+    mapfile -t packages < <(sed -e 's/#.*//' "$@" | grep -E '^(lib|zlib|nlohmann|tiny-dnn|python3-numpy)')
     apt-get install -y -qq --download-only libc6-dev libstdc++-12-dev "${packages[@]}" > "$folder/apt/log" 2>&1 ||
       { cat "$folder/apt/log" >&2; exit 1; }
     root=$folder/root.new

@@ -2,8 +2,7 @@
    programs; libscreed, which holds all of libscreed-core and libscreed-soil as well.
 
    `sets` are keys of an experiment in place of its own, "section.key=value". Units, errors and
-   threads: base.h; but physics ("native") takes sines of the C library of this machine, so that its
-   last bits may differ from the program's on another processor. */
+   threads: base.h. */
 #ifndef SCREED_RUN_H
 #define SCREED_RUN_H
 

@@ -1,6 +1,7 @@
 // Ownership of an ODE world.
 #include "host_sim/physics/vehicle/ode_world.h"
 
+#include <cstdio>
 #include <mutex>
 
 #include "host_sim/core/constants.h"
@@ -32,6 +33,12 @@ double atan2(double y, double x) noexcept {
 }
 }
 #pragma GCC visibility pop
+
+// Where ODE complains to, for a library that holds it (interface.mk).
+extern "C" {
+std::FILE* screed_stdout = stdout;
+std::FILE* screed_stderr = stderr;
+}
 
 namespace screed {
 namespace {
