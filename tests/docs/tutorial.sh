@@ -13,6 +13,8 @@ mkdir "$folder/screed"
 git ls-files -z --cached --others --exclude-standard | while IFS= read -rd '' file; do
   if [ -e "$file" ]; then printf '%s\0' "$file"; fi
 done | tar -c --null -T - | tar -x -C "$folder/screed"
+# Of this commit, though without git: what is built knows it, and is not built anew.
+tools/build/version.sh | cut -d' ' -f2,3 > "$folder/screed/tools/build/commit.txt"
 # Tests and other kinds of builds are not needed.
 for built in build/generated build/schema build/report build/firmware build/release; do
   if [ -d $built ]; then
