@@ -91,10 +91,10 @@ class BeltGround {
     double x;  // in the robot's axes, from where the plane's height counts, m
     double y;
     std::size_t patch;  // of the belt, above it
-    double share;  // of the cell that lies below
-    double over;   // of the belt's lower surface over its lower run, m
-    double level;  // from which sinkage counts, m
-    double prior;  // sinkage of the part below the belt, m
+    double share;       // of the cell that lies below
+    double over;        // of the belt's lower surface over its lower run, m
+    double level;       // from which sinkage counts, m
+    double prior;       // sinkage of the part below the belt, m
     SinkageDivision division;
     double flow;      // below the belt in this stride, m (slip_flow())
     double depth;     // of the belt below the level, m

@@ -349,9 +349,9 @@ TEST_F(OnceMore, WhatCannotBeChangedThenIsRefused) {
 TEST_F(OnceMore, ARunOfAnotherWorldIsNoted) {
   recorded();
   std::filesystem::remove(root_ / "was" / "summary.json");  // which says what world
-  const Result result = run(
-      "sim --from was --at 11 --set parameters.walk_speed_max=250 --duration 12 --no-pictures "
-      "--quiet --out is");
+  const Result result =
+      run("sim --from was --at 11 --set parameters.walk_speed_max=250 --duration 12 --no-pictures "
+          "--quiet --out is");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.err.find("was recorded by another program, in another world"), std::string::npos)
       << result.err;

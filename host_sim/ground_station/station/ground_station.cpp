@@ -102,8 +102,7 @@ void GroundStation::handle_answer(const message::CommandAck& answer) {
   const auto result = static_cast<RequestResult>(answer.result);
   if (result == RequestResult::kDone) changes_.values.erase(first);
   // It may be refused beside another one that is still to come.
-  if (result == RequestResult::kBadArgument)
-    std::rotate(first, first + 1, changes_.values.end());
+  if (result == RequestResult::kBadArgument) std::rotate(first, first + 1, changes_.values.end());
 }
 
 void GroundStation::add_change(std::vector<uint8_t>& lines) {

@@ -1,6 +1,6 @@
 // The sections of an experiment file that say what drives, and how: [experiment], [vehicle],
-// [battery], [drive], [sensors], [radio], [fixes], [later], [metrics], [robots]. Each lists its keys
-// once; experiment_keys.cpp reads and writes them.
+// [battery], [drive], [sensors], [radio], [fixes], [later], [metrics], [robots]. Each lists its
+// keys once; experiment_keys.cpp reads and writes them.
 #pragma once
 
 #include <algorithm>
@@ -310,7 +310,8 @@ struct LaterSection {
       const auto number = static_cast<uint8_t>(info.number);
       if (!changes_while_running(number)) continue;
       keys.integer(info.name, info.unit, static_cast<uint64_t>(info.min),
-                   static_cast<uint64_t>(info.max), "in place of that of [parameters], from then on",
+                   static_cast<uint64_t>(info.max),
+                   "in place of that of [parameters], from then on",
                    [number](LaterSection& later) -> std::optional<int16_t>& {
                      return later.values.at(number);
                    });

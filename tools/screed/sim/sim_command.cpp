@@ -225,8 +225,7 @@ SimArguments once_more(SimArguments arguments) {
   const double end_s = static_cast<double>(session.frames()) / kTickRate_hz;
   const std::string at = plain_text(*arguments.changes_at_s);
   if (*arguments.changes_at_s >= end_s) {
-    throw InputError("--at " + at + ": " + *arguments.from + " lasts " +
-                     plain_text(end_s) + " s");
+    throw InputError("--at " + at + ": " + *arguments.from + " lasts " + plain_text(end_s) + " s");
   }
   for (std::string& set : runs.sets) set = set_later(set);
   runs.sets.push_back("later.at=" + at);
@@ -267,9 +266,10 @@ bool tell_parting(const SimArguments& arguments, const std::filesystem::path& to
   }
   if (!arguments.runs.json) print("{}\n", text);
   if (!first.has_value() || first->time_s > *arguments.changes_at_s) return true;
-  std::cerr << "note: before --at " << plain_text(*arguments.changes_at_s)
-            << " s nothing was changed: " << *arguments.from
-            << " was recorded by another program, in another world, or with commands from outside\n";
+  std::cerr
+      << "note: before --at " << plain_text(*arguments.changes_at_s)
+      << " s nothing was changed: " << *arguments.from
+      << " was recorded by another program, in another world, or with commands from outside\n";
   return false;
 }
 

@@ -207,9 +207,9 @@ TEST(GroundStation, SetsParametersFromTheirTimeOnOneByOne) {
     return staged.at(1);
   };
   const auto answer = [&ground](RequestResult result, uint8_t freshness) {
-    ground.receive(0, line_of(frame_of(message::CommandAck{
-                          static_cast<uint8_t>(CommandOp::kParameterCommit), freshness,
-                          static_cast<uint8_t>(result), 0})));
+    ground.receive(
+        0, line_of(frame_of(message::CommandAck{static_cast<uint8_t>(CommandOp::kParameterCommit),
+                                                freshness, static_cast<uint8_t>(result), 0})));
   };
   EXPECT_EQ(next().index, Parameters::k_climb_speed);
   EXPECT_EQ(next().value, 90);  // again, without an answer
@@ -228,8 +228,7 @@ TEST(GroundStation, SetsParametersFromTheirTimeOnOneByOne) {
 TEST(GroundStation, ARunningRobotTakesTheParametersThatAreSetLater) {
   GroundStation ground(true, DriveCommand{0.1, 0.0}, nullptr);
   // The first is above what the second still is.
-  ground.change({6.0,
-                 {{Parameters::k_walk_speed_min, 200}, {Parameters::k_walk_speed_max, 220}}});
+  ground.change({6.0, {{Parameters::k_walk_speed_min, 200}, {Parameters::k_walk_speed_max, 220}}});
   Parameters parameters;
   parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   TestRobot robot(parameters);
