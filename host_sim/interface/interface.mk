@@ -29,14 +29,15 @@ $(B)/ode/libode.a:
 	@$(OBJCOPY) --redefine-sym stdout=screed_stdout --redefine-sym stderr=screed_stderr \
 	  "$$(pkg-config --variable=libdir ode)/libode.a" $@
 $(B)/libscreed.so.$(INTERFACE_ABI): $(ODE_WITHIN)
+SANITIZERS := $(filter -fsanitize%,$(OPTIMISE_$(BUILD)))
+SANITIZERS += $(if $(SANITIZERS),-shared-libsan)
 define interface_library
 $(B)/$(1).map: host_sim/interface/$(1).symbols
 	@mkdir -p $$(@D)
 	@echo 'SCREED_$(INTERFACE_ABI) { global: $$(patsubst %,%;,$$(call symbols_of,$(1))) local: *; };' > $$@
 $(B)/lib$(1).so.$(INTERFACE_ABI): $(INTERFACE_OBJECTS) $(B)/$(1).map $(B)/link.flags
 	@echo "  LINK $$@"
-	@$$(CXX) -shared $$(filter -fsanitize%,$$(OPTIMISE_$(BUILD))) -Wl,-soname,$$(@F) -Wl,--version-script=$(B)/$(1).map \
-	  -Wl,-z,defs $$(call only_needed,$(1)) $(INTERFACE_OBJECTS) -Wl,--as-needed $$(interface_libraries_$(1)) -o $$@
+	@$$(CXX) -shared $(SANITIZERS) -Wl,-soname,$$(@F) -Wl,--version-script=$(B)/$(1).map -Wl,-z,defs $$(call only_needed,$(1)) $(INTERFACE_OBJECTS) -Wl,--as-needed $$(interface_libraries_$(1)) -o $$@
 	@ln -sfn $$(@F) $$(basename $$@)
 $(B)/$(1).pc: host_sim/interface/screed.pc.in FORCE
 	@sed 's|@NAME@|$(1)|; s|@VERSION@|$(firstword $(VERSION_WORDS))|; s|@UP@|$(PC_UP)|' $$< | $$(WRITE_CHANGED)

@@ -95,6 +95,8 @@ $(B)/tiny_dnn/third_party/stb: | $(SYSROOT)
 # of two that are called alike.
 VECTOR_SOURCES := nn/training/predict.cpp nn/terrain/terrain_trainer.cpp tools/bench/speed/network_bench.cpp
 $(call objects,$(VECTOR_SOURCES)): EXTRA_FLAGS += -UEIGEN_DONT_VECTORIZE -DEigen=EigenVectorised
+# Headers that were compiled otherwise are of no use to them: gcc sees it, clang refuses.
+$(call objects,$(VECTOR_SOURCES)): HEADERS_FLAGS =
 RSVG_FLAGS = $(shell $(call package_flags,librsvg-2.0))
 RSVG_SOURCES := host_sim/render/chart/svg.cpp
 $(call objects,$(RSVG_SOURCES)): EXTRA_FLAGS = $(RSVG_FLAGS)
