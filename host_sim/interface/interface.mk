@@ -18,9 +18,9 @@ INTERFACE_OBJECTS := $(if $(filter yes,$(MCU)),$(B)/host_sim/run/world/without_s
 interface_libraries_screed = $$(sed 's|-lsimavr||; s|-lode|$(ODE_WITHIN) $(ODE_NEEDS)|' $(B)/link.flags)
 only_needed = -Wl,--gc-sections $(patsubst %,-Wl$(comma)-u$(comma)%,$(call symbols_of,$(1)))
 
-# ODE as a part of libscreed: it calls the sines that are defined there, as in the program; a shared one would call those
-# of the C library, whose bits depend on the processor. Debian's static one is for programs: a shared library may not
-# hold the address of another one's variable, so it gets an own one (ode_world.cpp).
+# ODE as a part of libscreed: it calls the sines that are defined there, as in the program; a shared one would call
+# those of the C library, whose bits depend on the processor. Debian's static one is for programs: a shared library may
+# not hold the address of another one's variable, so it gets an own one (ode_world.cpp).
 ODE_WITHIN := $(or $(ODE),$(B)/ode/libode.a)
 # What Debian's ODE tells convex bodies apart with.
 ODE_NEEDS := $(if $(ODE),,-l:libccd.so.2)
@@ -37,7 +37,8 @@ $(B)/$(1).map: host_sim/interface/$(1).symbols
 	@echo 'SCREED_$(INTERFACE_ABI) { global: $$(patsubst %,%;,$$(call symbols_of,$(1))) local: *; };' > $$@
 $(B)/lib$(1).so.$(INTERFACE_ABI): $(INTERFACE_OBJECTS) $(B)/$(1).map $(B)/link.flags
 	@echo "  LINK $$@"
-	@$$(CXX) -shared $(SANITIZERS) -Wl,-soname,$$(@F) -Wl,--version-script=$(B)/$(1).map -Wl,-z,defs $$(call only_needed,$(1)) $(INTERFACE_OBJECTS) -Wl,--as-needed $$(interface_libraries_$(1)) -o $$@
+	@$$(CXX) -shared $(SANITIZERS) -Wl,-soname,$$(@F) -Wl,--version-script=$(B)/$(1).map -Wl,-z,defs \
+	  $$(call only_needed,$(1)) $(INTERFACE_OBJECTS) -Wl,--as-needed $$(interface_libraries_$(1)) -o $$@
 	@ln -sfn $$(@F) $$(basename $$@)
 $(B)/$(1).pc: host_sim/interface/screed.pc.in FORCE
 	@sed 's|@NAME@|$(1)|; s|@VERSION@|$(firstword $(VERSION_WORDS))|; s|@UP@|$(PC_UP)|' $$< | $$(WRITE_CHANGED)

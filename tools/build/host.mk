@@ -106,12 +106,13 @@ $(call objects,$(SDL_SOURCES)): EXTRA_FLAGS = $(SDL_FLAGS)
 
 # ---- generated headers: what the program knows of its surroundings; only files that include them depend on them
 
+BUILT_IN = ODE $$(pkg-config --modversion ode), HDF5 $$(pkg-config --modversion hdf5),
+BUILT_IN += $(if $(filter yes,$(MCU)),simavr,no simavr (MCU=no))
 $(B)/generated/version.h: FORCE
 	@mkdir -p $(@D)
 	@{ echo '#define SCREED_VERSION "$(VERSION)"' ; \
 	   echo '#define SCREED_VERSION_TEXT "screed $(VERSION) ($(word 3,$(VERSION_WORDS)))"' ; \
-	   echo "#define SCREED_BUILT_IN \"ODE $$(pkg-config --modversion ode), HDF5 $$(pkg-config --modversion hdf5),\" \\" ; \
-	   echo '  " $(if $(filter yes,$(MCU)),simavr,no simavr (MCU=no))"' ; } | $(WRITE_CHANGED)
+	   echo "#define SCREED_BUILT_IN \"$(BUILT_IN)\"" ; } | $(WRITE_CHANGED)
 $(B)/generated/paths.h: FORCE
 	@mkdir -p $(@D)
 	@{ echo '// Where the data of this build lies.' ; echo '#pragma once' ; echo 'namespace screed {' ; \
