@@ -65,14 +65,15 @@ c_program() {
 }
 # The module takes the library of the folder that it is told.
 python() {
-  local build=$RELEASE run="${ways[$way]-} /usr/bin/python3" lib=usr/lib/aarch64-linux-gnu
+  local build=$RELEASE run="${ways[$way]-} /usr/bin/python3" path=tools/python lib=usr/lib/aarch64-linux-gnu
   if [ "$way" = arm64 ]; then
     build=$ARM64
+    path+=:$PYTHON_ARM64/usr/lib/python3/dist-packages
     run="qemu-aarch64 -L $SYSROOT -E PYTHONHOME=$PYTHON_ARM64/usr -E LD_LIBRARY_PATH=$SYSROOT/$lib"
     run+=$(printf ":$PYTHON_ARM64/%s" {,usr/}lib/aarch64-linux-gnu $lib/blas $lib/lapack)
     run+=" $PYTHON_ARM64/usr/bin/python3"
   fi
-  PYTHONPATH=tools/python:$PYTHON_ARM64/usr/lib/python3/dist-packages SCREED_LIBRARY=$build/libscreed.so \
+  PYTHONPATH=$path SCREED_LIBRARY=$build/libscreed.so \
     $run -c 'import screed, sys
 experiment, hal, seconds, out = sys.argv[1:]
 print(screed.sim(experiment, hal=hal, set={"experiment.duration": seconds}, out=out).content_hash)' \

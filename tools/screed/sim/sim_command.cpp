@@ -264,7 +264,7 @@ bool tell_parting(const SimArguments& arguments, const std::filesystem::path& to
     json["parts_from"]["column"] = first->column;
     text = filled("parts from {} at {:.2f} s: {}", *arguments.from, first->time_s, first->column);
   }
-  if (!arguments.runs.json) print("{}\n", text);
+  if (!arguments.runs.json && !arguments.runs.quiet) print("{}\n", text);
   if (!first.has_value() || first->time_s > *arguments.changes_at_s) return true;
   std::cerr
       << "note: before --at " << plain_text(*arguments.changes_at_s)
