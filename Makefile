@@ -19,7 +19,8 @@ PACKAGE_LISTS := tools/debian-packages.txt \
   $(or $(call packages_for,test-portable test-processors,tools/arm64),$(if \
     $(filter arm64,$(BUILD)),tools/arm64/debian-packages.txt)) \
   $(call packages_for,test-can,tests/can) $(call packages_for,test-slurm,tests/slurm) \
-  $(call packages_for,test-python test-tutorial,tests/python) $(call packages_for,test-report,tests/report) \
+  $(call packages_for,test-python test-tutorial test-processors,tests/python) \
+  $(call packages_for,test-report,tests/report) \
   $(call packages_for,test-interface,tests/interface) $(call packages_for,packages test-packages,tools/package) \
   $(call packages_for,camera test-camera,tools/camera) $(call packages_for,pictures,tools/pictures) \
   $(if $(shell command -v npm)$(wildcard tools/report/built_page.html),,$(call \

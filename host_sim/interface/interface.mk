@@ -19,8 +19,8 @@ interface_libraries_screed = $$(sed 's|-lsimavr||; s|-lode|$(ODE_WITHIN) $(ODE_N
 only_needed = -Wl,--gc-sections $(patsubst %,-Wl$(comma)-u$(comma)%,$(call symbols_of,$(1)))
 
 # ODE as a part of libscreed: it calls the sines that are defined there, as in the program; a shared one would call
-# those of the C library, whose bits depend on the processor. Debian's static one is for programs: a shared library may
-# not hold the address of another one's variable, so it gets an own one (ode_world.cpp).
+# those of the C library, whose bits depend on the processor. Debian's static one is made for programs: within a
+# shared library it may not hold the address of the C library's stdout, so it gets variables of ours (ode_world.cpp).
 ODE_WITHIN := $(or $(ODE),$(B)/ode/libode.a)
 # What Debian's ODE tells convex bodies apart with.
 ODE_NEEDS := $(if $(ODE),,-l:libccd.so.2)

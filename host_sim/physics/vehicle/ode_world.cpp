@@ -34,7 +34,7 @@ double atan2(double y, double x) noexcept {
 }
 #pragma GCC visibility pop
 
-// Where ODE complains to, for a library that holds it (interface.mk).
+// What ODE within libscreed writes its messages to (interface.mk).
 extern "C" {
 std::FILE* screed_stdout = stdout;
 std::FILE* screed_stderr = stderr;

@@ -267,8 +267,8 @@ bool tell_parting(const SimArguments& arguments, const std::filesystem::path& to
   if (!arguments.runs.json && !arguments.runs.quiet) print("{}\n", text);
   if (!first.has_value() || first->time_s > *arguments.changes_at_s) return true;
   std::cerr
-      << "note: before --at " << plain_text(*arguments.changes_at_s)
-      << " s nothing was changed: " << *arguments.from
+      << "note: they part before --at " << plain_text(*arguments.changes_at_s) << ": "
+      << *arguments.from
       << " was recorded by another program, in another world, or with commands from outside\n";
   return false;
 }
